@@ -1,0 +1,96 @@
+"""The boundary: the only place that coerces and checks arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rinow import tolerances
+from rinow.errors import InvalidInputError, NotAMetricError
+
+__all__ = ["as_distance_matrix", "as_floats", "as_index_tuples", "as_indices", "as_points", "read_only"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """The same array, marked so that nobody writes into it."""
+    array.flags.writeable = False
+    return array
+
+
+def as_floats(values: ArrayLike, name: str) -> Floats:
+    """Any real numbers as a C-ordered float64 array; refuses complex, text and ragged input."""
+    try:
+        array = np.asarray(values)
+    except (ValueError, TypeError) as error:
+        raise InvalidInputError(f"{name} is not an array of numbers: {error}.") from None
+    if array.dtype.kind not in "fiu":
+        raise InvalidInputError(f"{name} has type {array.dtype}; give real numbers.")
+    return np.ascontiguousarray(array, np.float64) if array.ndim else np.asarray(array, np.float64)
+
+
+def as_points(points: ArrayLike, name: str = "points", dimension: int | None = None) -> Floats:
+    """Points as rows of an (n, dimension) array; non-finite coordinates are left to the caller."""
+    array = as_floats(points, name)
+    if array.ndim != 2 or (dimension is not None and array.shape[1] != dimension):
+        width = "d" if dimension is None else dimension
+        raise InvalidInputError(f"{name} has shape {array.shape}; give one point per row, shape (n, {width}).")
+    return array
+
+
+def as_indices(values: ArrayLike, n: int, name: str) -> Indices:
+    """Integers of any shape, each in [0, n)."""
+    array = np.asarray(values)
+    if array.size == 0 and array.dtype.kind == "f":
+        array = array.astype(np.intp)
+    if array.dtype.kind not in "iu":
+        raise InvalidInputError(f"{name} has type {array.dtype}; give integer indices.")
+    wrong = (array < 0) | (array >= n)
+    if wrong.any():
+        place = tuple(int(i) for i in np.argwhere(wrong)[0])
+        where = ", ".join(map(str, place))
+        raise InvalidInputError(f"{name}[{where}] = {array[place]} is outside 0..{n - 1}; indices count from 0.")
+    return np.ascontiguousarray(array, np.intp) if array.ndim else np.asarray(array, np.intp)
+
+
+def as_index_tuples(values: ArrayLike, *, width: int, n_points: int, name: str) -> Indices:
+    """Rows of `width` indices, each in [0, n_points)."""
+    array = np.asarray(values)
+    if array.size == 0:
+        array = array.reshape(-1, width).astype(np.intp)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise InvalidInputError(f"{name} has shape {array.shape}; give {width} indices per row, shape (n, {width}).")
+    return as_indices(array, n_points, name)
+
+
+def as_distance_matrix(
+    distances: ArrayLike, *, rtol: float = tolerances.METRIC_TRIANGLE_INEQUALITY, name: str = "distances"
+) -> Floats:
+    """A square, finite, non-negative, exactly symmetric matrix with zero diagonal.
+
+    The triangle inequality is left to `MetricSpace`, which has the compiled test and finds the worst triple.
+    """
+    D = as_floats(distances, name)
+    if D.ndim != 2 or D.shape[0] != D.shape[1]:
+        raise InvalidInputError(f"{name} has shape {D.shape}; give a square matrix.")
+    if len(D) == 0:
+        raise InvalidInputError(f"{name} is empty; a metric space has at least one point.")
+    _refuse(~np.isfinite(D), D, name, "is not finite; replace or remove the point")
+    _refuse(D < 0, D, name, "is negative; distances are not")
+    scale = float(D.max())
+    _refuse(np.abs(D - D.T) > rtol * scale, D, name, "differs from its transpose; symmetrise the matrix or raise rtol")
+    _refuse((np.abs(D) > rtol * scale) & np.eye(len(D), dtype=bool), D, name, "is on the diagonal and must be 0")
+    D = 0.5 * (D + D.T)
+    np.fill_diagonal(D, 0.0)
+    return D
+
+
+def _refuse(wrong: NDArray[np.bool_], D: Floats, name: str, fault: str) -> None:
+    """Raise `NotAMetricError` for the first wrong entry."""
+    if wrong.any():
+        i, j = (int(x) for x in np.argwhere(wrong)[0])
+        raise NotAMetricError(f"{name}[{i}, {j}] = {D[i, j]:.17g} {fault}.", witness=(i, j))

@@ -1,0 +1,1 @@
+"""Curvature at points, of curves and of surfaces."""

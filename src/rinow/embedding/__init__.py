@@ -1,0 +1,1 @@
+"""Curvature of few points: space forms, determinants, metric quadruples."""

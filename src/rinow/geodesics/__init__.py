@@ -1,0 +1,1 @@
+"""Distances within a surface or a graph."""

@@ -1,0 +1,1 @@
+"""Compiled kernels: numbers and flat arrays only, no objects, no errors, no printing."""

@@ -1,0 +1,359 @@
+"""Triangle meshes as values: by edge lengths (`IntrinsicMesh`) and by positions (`TriangleMesh`)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from rinow import tolerances
+from rinow._arrays import as_floats, as_index_tuples, as_points, read_only
+from rinow.errors import InvalidInputError, InvalidMeshError
+from rinow.kernels import triangles
+from rinow.topology import Topology
+
+__all__ = ["IntrinsicMesh", "TriangleMesh", "as_mesh", "as_triangle_mesh"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+class _Mesh:
+    """What edge lengths alone tell; both kinds of mesh share it."""
+
+    faces: Indices
+    n_vertices: int
+
+    @cached_property
+    def edge_lengths(self) -> Floats:
+        """(n_faces, 3): column k is the side opposite corner k; nan where a position is not finite."""
+        raise NotImplementedError
+
+    @cached_property
+    def topology(self) -> Topology:
+        """Adjacency of the faces that take part."""
+        F = self.faces
+        distinct = (F[:, 0] != F[:, 1]) & (F[:, 1] != F[:, 2]) & (F[:, 2] != F[:, 0])
+        return Topology(F, self.n_vertices, read_only(distinct & np.isfinite(self.edge_lengths).all(axis=1)))
+
+    @property
+    def n_faces(self) -> int:
+        """Number of faces, those that take no part included."""
+        return len(self.faces)
+
+    @cached_property
+    def _angles_and_areas(self) -> tuple[Floats, Floats]:
+        angles, areas = np.empty((self.n_faces, 3)), np.empty(self.n_faces)
+        triangles.face_angles_and_areas(self.edge_lengths, angles, areas)
+        return read_only(angles), read_only(areas)
+
+    @property
+    def corner_angles(self) -> Floats:
+        """(n_faces, 3): Euclidean angle at each corner, in [0, pi]; the three sum to pi."""
+        return self._angles_and_areas[0]
+
+    @property
+    def face_areas(self) -> Floats:
+        """(n_faces,): Euclidean area; nan for a face with an undefined length."""
+        return self._angles_and_areas[1]
+
+    @cached_property
+    def face_is_degenerate(self) -> NDArray[np.bool_]:
+        """(n_faces,): the face takes no part, or its area is 0 within rounding."""
+        longest = self.edge_lengths.max(axis=1)
+        proper = self.face_areas > tolerances.DEGENERATE_AREA * longest * longest
+        return read_only(~(proper & self.topology.face_used))
+
+    @cached_property
+    def vertex_areas(self) -> Floats:
+        """(n_vertices,): one third of the incident area; 0 without a face."""
+        t = self.topology
+        total = np.empty(self.n_vertices)
+        triangles.vertex_sums_of_faces(self.face_areas, t.corner_offsets, t.vertex_corners, total)
+        return read_only(total / 3.0)
+
+    @cached_property
+    def vertex_angle_defects(self) -> Floats:
+        r"""(n_vertices,): integrated curvature in radians; the sum is exactly :math:`2\pi\chi` on every mesh.
+
+        It is 2π minus the angles at an interior vertex, π minus the angles at a boundary vertex (the turning of
+        the boundary), 0 without a face, and in general 2π − π (edges − faces at the vertex) − angles.
+        """
+        t = self.topology
+        angles = np.empty(self.n_vertices)
+        triangles.vertex_sums_of_corners(self.corner_angles, t.corner_offsets, t.vertex_corners, angles)
+        n_corners = np.diff(t.corner_offsets)
+        # Edges minus faces at a vertex; only boundary and non-manifold edges make it differ from 0.
+        irregular = t.edges[t.edge_is_boundary | ~t.edge_is_manifold]
+        surplus = np.zeros(self.n_vertices)
+        if len(irregular):
+            touched = np.unique(irregular)
+            n_edges = np.bincount(t.edges.ravel(), minlength=self.n_vertices)
+            surplus[touched] = (n_edges - n_corners)[touched]
+        return read_only(np.where(n_corners > 0, np.pi * (2.0 - surplus) - angles, 0.0))
+
+    @property
+    def euler_characteristic(self) -> int:
+        """Vertices minus edges plus faces, of the part that has faces."""
+        return self.topology.euler_characteristic
+
+    @cached_property
+    def boundary_vertices(self) -> Indices:
+        """Indices of the vertices on the boundary, ascending."""
+        return read_only(np.flatnonzero(self.topology.vertex_is_boundary))
+
+    @property
+    def components(self) -> Indices:
+        """(n_vertices,): number of the connected component; -1 for a vertex without a face."""
+        return self.topology.components
+
+    @cached_property
+    def mean_edge_length(self) -> float:
+        """Mean length of the edges; nan without any."""
+        f, k = np.divmod(self.topology.edge_halfedges, 3)
+        return float(self.edge_lengths[f, (k + 2) % 3].mean()) if len(f) else float("nan")
+
+
+@dataclass(frozen=True, eq=False)
+class IntrinsicMesh(_Mesh):
+    """A triangulated surface known by its edge lengths only.
+
+    Parameters
+    ----------
+    faces : (n_faces, 3) array_like of int
+        Vertex indices of each triangle.
+    edge_lengths : (n_faces, 3) array_like of float
+        Side lengths, column k opposite corner k, in any unit; a face with a nan or inf takes no part.
+    n_vertices : int, optional
+        Number of vertices; by default the largest index plus one.
+
+    Raises
+    ------
+    InvalidMeshError
+        If there is no face, a length is negative, the sides of a face fail the triangle inequality, or
+        two faces disagree about the length of their common edge.
+    InvalidInputError
+        If a shape, a type or an index range is wrong.
+    """
+
+    faces: Indices
+    edge_lengths: Floats  # pyright: ignore[reportIncompatibleVariableOverride]
+    n_vertices: int = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        F = _as_faces(self.faces, self.n_vertices)
+        L = as_floats(self.edge_lengths, "edge_lengths").copy()
+        if L.shape != F.shape:
+            raise InvalidMeshError(f"edge_lengths has shape {L.shape} but faces {F.shape}; give one length per side.")
+        negative = np.argwhere(L < 0)
+        if len(negative):
+            f, k = negative[0]
+            raise InvalidMeshError(f"edge_lengths[{f}, {k}] = {L[f, k]:.17g} is negative; lengths are not.")
+        longest = L.max(axis=1)
+        bad = np.flatnonzero(2 * longest - L.sum(axis=1) > tolerances.TRIANGLE_INEQUALITY * longest)
+        if len(bad):
+            raise InvalidMeshError(
+                f"edge_lengths[{bad[0]}] = {L[bad[0]].tolist()} fails the triangle inequality; no triangle has these sides."
+            )
+        object.__setattr__(self, "faces", F)
+        object.__setattr__(self, "edge_lengths", read_only(L))
+        object.__setattr__(self, "n_vertices", int(F.max()) + 1 if self.n_vertices is None else int(self.n_vertices))
+        self._check_shared_edges()
+
+    def _check_shared_edges(self) -> None:
+        partners = self.topology.partners
+        h = np.flatnonzero(partners > np.arange(len(partners)))
+        sides = self.edge_lengths[:, [2, 0, 1]].ravel()  # in the order of the half-edges
+        a, b = sides[h], sides[partners[h]]
+        bad = np.flatnonzero(np.abs(a - b) > tolerances.SHARED_EDGE_LENGTH * np.maximum(a, b))
+        if len(bad):
+            i = bad[0]
+            f, g = h[i] // 3, partners[h[i]] // 3
+            raise InvalidMeshError(
+                f"faces {f} and {g} give their common edge the lengths {a[i]:.17g} and {b[i]:.17g}; "
+                "an edge has one length."
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh(_Mesh):
+    """A triangulated surface with a position for every vertex.
+
+    Parameters
+    ----------
+    vertices : (n_vertices, 3) array_like of float
+        Positions, in any unit of length.  Rows with nan or inf are allowed; faces that use them take no part.
+    faces : (n_faces, 3) array_like of int
+        Vertex indices of each triangle, counter-clockwise seen from outside.
+    vertex_data : mapping of str to (n_vertices, ...) array_like, optional
+        Fields carried along, such as the scalars found in a file.
+    notes : tuple of str, optional
+        What a reader had to do to make the mesh, one sentence each.
+
+    Raises
+    ------
+    InvalidMeshError
+        If there is no vertex or no face.
+    InvalidInputError
+        If a shape, a type or an index range is wrong.
+    """
+
+    vertices: Floats
+    faces: Indices
+    vertex_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        V = as_points(self.vertices, "vertices", 3).copy()
+        if len(V) == 0:
+            raise InvalidMeshError("vertices is empty; a mesh has at least one vertex.")
+        data = {str(name): np.asarray(values) for name, values in (self.vertex_data or {}).items()}
+        for name, values in data.items():
+            if values.shape[:1] != (len(V),):
+                raise InvalidInputError(
+                    f"vertex_data[{name!r}] has shape {values.shape}; its first length must be n_vertices = {len(V)}."
+                )
+        object.__setattr__(self, "vertices", read_only(V))
+        object.__setattr__(self, "faces", _as_faces(self.faces, len(V)))
+        object.__setattr__(self, "vertex_data", MappingProxyType(data))
+        object.__setattr__(self, "notes", tuple(self.notes))
+
+    @property
+    def n_vertices(self) -> int:  # type: ignore[override]
+        """Number of vertices, those without a face included."""
+        return len(self.vertices)
+
+    @cached_property
+    def edge_lengths(self) -> Floats:
+        """(n_faces, 3): column k is the side opposite corner k; nan where a position is not finite."""
+        L = np.empty((self.n_faces, 3))
+        triangles.face_edge_lengths(self.vertices, self.faces, L)
+        L[~np.isfinite(L)] = np.nan
+        return read_only(L)
+
+    @cached_property
+    def vertex_is_finite(self) -> NDArray[np.bool_]:
+        """(n_vertices,): all three coordinates are finite."""
+        return read_only(np.isfinite(self.vertices).all(axis=1))
+
+    @cached_property
+    def outward_flips(self) -> NDArray[np.bool_]:
+        """(n_faces,): faces to turn so that neighbours agree and a closed surface has its normals outward."""
+        flip = self.topology.face_flips
+        if self.topology.is_closed and self.topology.is_orientable:
+            F = self.faces[self.topology.face_used]
+            V = self.vertices - self.vertices[F[0, 0]]
+            volumes = np.einsum("ij,ij->i", V[F[:, 0]], np.cross(V[F[:, 1]], V[F[:, 2]]))
+            if np.where(flip[self.topology.face_used], -volumes, volumes).sum() < 0:
+                flip = ~flip
+        return read_only(flip)
+
+    @cached_property
+    def vertex_normals(self) -> Floats:
+        """(n_vertices, 3): unit normals, outward on a closed surface; 0 where the faces around cancel or are absent."""
+        t = self.topology
+        normals = np.empty_like(self.vertices)
+        triangles.vertex_normals(
+            self.vertices, self.faces, self.outward_flips, t.corner_offsets, t.vertex_corners, normals
+        )
+        return read_only(normals)
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Length of the diagonal of the bounding box of the finite vertices; 0 without any."""
+        V = self.vertices[self.vertex_is_finite]
+        return float(np.linalg.norm(V.max(axis=0) - V.min(axis=0))) if len(V) else 0.0
+
+    def intrinsic(self) -> IntrinsicMesh:
+        """The same surface, its positions forgotten."""
+        return IntrinsicMesh(self.faces, self.edge_lengths, self.n_vertices)
+
+    @property
+    def is_soup(self) -> bool:
+        """Whether no two faces share an edge although several could: every face is separate."""
+        used = int(self.topology.face_used.sum())
+        return used > 1 and self.topology.n_edges == 3 * used
+
+    def welded(self, *, rtol: float = tolerances.WELD_DISTANCE) -> tuple[TriangleMesh, Indices]:
+        """Merge vertices closer than ``rtol`` times the diagonal of the bounding box.
+
+        Returns
+        -------
+        mesh : TriangleMesh
+            One vertex for each cluster, in the order of first appearance, with the position of its first vertex.
+        vertex_map : (n_vertices,) ndarray of intp
+            New index of each old vertex.  Vertices that are not finite stay apart.
+        """
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        finite = np.flatnonzero(self.vertex_is_finite)
+        pairs = finite[cKDTree(self.vertices[finite]).query_pairs(rtol * self.diagonal, output_type="ndarray")]
+        n = self.n_vertices
+        links = coo_array((np.ones(len(pairs), np.bool_), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+        labels = connected_components(links, directed=False)[1]
+        _, first, vertex_map = np.unique(labels, return_index=True, return_inverse=True)
+        order = np.argsort(first)
+        rank = np.empty_like(order)
+        rank[order] = np.arange(len(order))
+        vertex_map = rank[vertex_map].astype(np.intp)
+        return TriangleMesh(self.vertices[first[order]], vertex_map[self.faces]), vertex_map
+
+
+def _as_faces(faces: ArrayLike, n_vertices: int | None) -> Indices:
+    """Faces as a private, read-only copy with every index in range."""
+    n = np.iinfo(np.intp).max if n_vertices is None else n_vertices
+    array = np.asarray(faces)
+    if array.size == 0:
+        raise InvalidMeshError("faces is empty; a mesh has at least one face (point clouds have point_cloud_curvature).")
+    if array.ndim == 2 and array.shape[1] == 4:
+        raise InvalidMeshError(f"faces has shape {array.shape}; split quadrilaterals into triangles first.")
+    F = as_index_tuples(array, width=3, n_points=n, name="faces")
+    return read_only(np.array(F, order="C"))
+
+
+def as_mesh(mesh: Any) -> TriangleMesh | IntrinsicMesh:
+    """The mesh meant by a `TriangleMesh`, an `IntrinsicMesh`, a ``(V, F)`` pair, or an object with vertices and faces.
+
+    Objects are taken by their attributes: ``.vertices`` and ``.faces`` (trimesh), or ``.points`` and
+    ``.regular_faces`` (a triangulated pyvista ``PolyData``).
+
+    Raises
+    ------
+    InvalidMeshError
+        If `mesh` is none of these.
+    """
+    if isinstance(mesh, TriangleMesh | IntrinsicMesh):
+        return mesh
+    if isinstance(mesh, tuple | list) and len(mesh) == 2:
+        return TriangleMesh(mesh[0], mesh[1])
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+        return TriangleMesh(np.asarray(mesh.vertices), np.asarray(mesh.faces))
+    if hasattr(mesh, "points") and hasattr(mesh, "regular_faces"):
+        if not mesh.is_all_triangles:
+            raise InvalidMeshError("mesh is a PolyData with polygons; call its triangulate() first.")
+        return TriangleMesh(np.asarray(mesh.points), np.asarray(mesh.regular_faces))
+    raise InvalidMeshError(
+        f"mesh is a {type(mesh).__name__}; give a TriangleMesh, an IntrinsicMesh, a (V, F) pair or an object with "
+        "vertices and faces (files are read by read_mesh)."
+    )
+
+
+def as_triangle_mesh(mesh: Any) -> TriangleMesh:
+    """`as_mesh`, for functions that need positions.
+
+    Raises
+    ------
+    InvalidMeshError
+        If `mesh` has edge lengths only.
+    """
+    result = as_mesh(mesh)
+    if isinstance(result, IntrinsicMesh):
+        raise InvalidMeshError("mesh is an IntrinsicMesh, but positions are needed; give a TriangleMesh.")
+    return result

@@ -1,0 +1,1 @@
+"""Pictures and pages; nothing is computed here."""

@@ -1,0 +1,1 @@
+"""Topics composed into one frozen result."""

@@ -1,0 +1,17 @@
+"""Relative tolerances, each with its reason.  None is an absolute length."""
+
+TRIANGLE_INEQUALITY = 1e-9
+"""A side may exceed the sum of the two others by this share of the largest one (rounding of stored lengths)."""
+
+METRIC_TRIANGLE_INEQUALITY = 1e-9
+"""The same for a distance matrix, relative to its diameter; users may change it by `rtol`."""
+
+SHARED_EDGE_LENGTH = 1e-9
+"""Two faces may differ by this share in the length of the edge they share."""
+
+DEGENERATE_AREA = 1e-12
+"""A triangle is degenerate when its area is below this share of its longest edge squared."""
+
+WELD_DISTANCE = 1e-5
+"""Vertices closer than this share of the bounding-box diagonal are one point of a triangle soup (exact
+equality leaves hundreds of open edges on CAD parts)."""

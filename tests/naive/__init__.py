@@ -1,0 +1,1 @@
+"""Naive twins of the kernels: another formula, plain loops, standard library only."""
