@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import cKDTree
 
 from rinow import tolerances
 from rinow._arrays import as_floats, as_index_tuples, as_points, read_only
@@ -120,7 +119,7 @@ class _Mesh:
         return float(self.edge_lengths[f, (k + 2) % 3].mean()) if len(f) else float("nan")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class IntrinsicMesh(_Mesh):
     """A triangulated surface known by its edge lengths only.
 
@@ -144,26 +143,28 @@ class IntrinsicMesh(_Mesh):
 
     faces: Indices
     edge_lengths: Floats  # pyright: ignore[reportIncompatibleVariableOverride]
-    n_vertices: int = None  # type: ignore[assignment]
+    n_vertices: int
 
-    def __post_init__(self) -> None:
-        F = _as_faces(self.faces, self.n_vertices)
-        L = as_floats(self.edge_lengths, "edge_lengths").copy()
+    def __init__(self, faces: ArrayLike, edge_lengths: ArrayLike, n_vertices: int | None = None) -> None:
+        F = _as_faces(faces, n_vertices)
+        L = as_floats(edge_lengths, "edge_lengths").copy()
         if L.shape != F.shape:
             raise InvalidMeshError(f"edge_lengths has shape {L.shape} but faces {F.shape}; give one length per side.")
         negative = np.argwhere(L < 0)
         if len(negative):
             f, k = negative[0]
             raise InvalidMeshError(f"edge_lengths[{f}, {k}] = {L[f, k]:.17g} is negative; lengths are not.")
+        L[~np.isfinite(L)] = np.nan
         longest = L.max(axis=1)
         bad = np.flatnonzero(2 * longest - L.sum(axis=1) > tolerances.TRIANGLE_INEQUALITY * longest)
         if len(bad):
             raise InvalidMeshError(
-                f"edge_lengths[{bad[0]}] = {L[bad[0]].tolist()} fails the triangle inequality; no triangle has these sides."
+                f"edge_lengths[{bad[0]}] = {L[bad[0]].tolist()} fails the triangle inequality; "
+                "no triangle has these sides."
             )
         object.__setattr__(self, "faces", F)
         object.__setattr__(self, "edge_lengths", read_only(L))
-        object.__setattr__(self, "n_vertices", int(F.max()) + 1 if self.n_vertices is None else int(self.n_vertices))
+        object.__setattr__(self, "n_vertices", int(F.max()) + 1 if n_vertices is None else int(n_vertices))
         self._check_shared_edges()
 
     def _check_shared_edges(self) -> None:
@@ -181,7 +182,7 @@ class IntrinsicMesh(_Mesh):
             )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class TriangleMesh(_Mesh):
     """A triangulated surface with a position for every vertex.
 
@@ -206,23 +207,29 @@ class TriangleMesh(_Mesh):
 
     vertices: Floats
     faces: Indices
-    vertex_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    vertex_data: Mapping[str, NDArray[Any]]
+    notes: tuple[str, ...]
 
-    def __post_init__(self) -> None:
-        V = as_points(self.vertices, "vertices", 3).copy()
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        vertex_data: Mapping[str, ArrayLike] | None = None,
+        notes: Sequence[str] = (),
+    ) -> None:
+        V = as_points(vertices, "vertices", 3).copy()
         if len(V) == 0:
             raise InvalidMeshError("vertices is empty; a mesh has at least one vertex.")
-        data = {str(name): np.asarray(values) for name, values in (self.vertex_data or {}).items()}
+        data = {str(name): np.asarray(values) for name, values in (vertex_data or {}).items()}
         for name, values in data.items():
             if values.shape[:1] != (len(V),):
                 raise InvalidInputError(
                     f"vertex_data[{name!r}] has shape {values.shape}; its first length must be n_vertices = {len(V)}."
                 )
         object.__setattr__(self, "vertices", read_only(V))
-        object.__setattr__(self, "faces", _as_faces(self.faces, len(V)))
+        object.__setattr__(self, "faces", _as_faces(faces, len(V)))
         object.__setattr__(self, "vertex_data", MappingProxyType(data))
-        object.__setattr__(self, "notes", tuple(self.notes))
+        object.__setattr__(self, "notes", tuple(notes))
 
     @property
     def n_vertices(self) -> int:  # type: ignore[override]
@@ -240,7 +247,7 @@ class TriangleMesh(_Mesh):
     @cached_property
     def vertex_is_finite(self) -> NDArray[np.bool_]:
         """(n_vertices,): all three coordinates are finite."""
-        return read_only(np.isfinite(self.vertices).all(axis=1))
+        return read_only(np.asarray(np.isfinite(self.vertices).all(axis=1)))
 
     @cached_property
     def outward_flips(self) -> NDArray[np.bool_]:
@@ -252,7 +259,7 @@ class TriangleMesh(_Mesh):
             volumes = np.einsum("ij,ij->i", V[F[:, 0]], np.cross(V[F[:, 1]], V[F[:, 2]]))
             if np.where(flip[self.topology.face_used], -volumes, volumes).sum() < 0:
                 flip = ~flip
-        return read_only(flip)
+        return read_only(np.asarray(flip))
 
     @cached_property
     def vertex_normals(self) -> Floats:
@@ -292,9 +299,10 @@ class TriangleMesh(_Mesh):
         """
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
+        from scipy.spatial import KDTree
 
         finite = np.flatnonzero(self.vertex_is_finite)
-        pairs = finite[cKDTree(self.vertices[finite]).query_pairs(rtol * self.diagonal, output_type="ndarray")]
+        pairs = finite[KDTree(self.vertices[finite]).query_pairs(rtol * self.diagonal, output_type="ndarray")]
         n = self.n_vertices
         links = coo_array((np.ones(len(pairs), np.bool_), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
         labels = connected_components(links, directed=False)[1]
@@ -311,7 +319,9 @@ def _as_faces(faces: ArrayLike, n_vertices: int | None) -> Indices:
     n = np.iinfo(np.intp).max if n_vertices is None else n_vertices
     array = np.asarray(faces)
     if array.size == 0:
-        raise InvalidMeshError("faces is empty; a mesh has at least one face (point clouds have point_cloud_curvature).")
+        raise InvalidMeshError(
+            "faces is empty; a mesh has at least one face (point clouds have point_cloud_curvature)."
+        )
     if array.ndim == 2 and array.shape[1] == 4:
         raise InvalidMeshError(f"faces has shape {array.shape}; split quadrilaterals into triangles first.")
     F = as_index_tuples(array, width=3, n_points=n, name="faces")
@@ -319,7 +329,7 @@ def _as_faces(faces: ArrayLike, n_vertices: int | None) -> Indices:
 
 
 def as_mesh(mesh: Any) -> TriangleMesh | IntrinsicMesh:
-    """The mesh meant by a `TriangleMesh`, an `IntrinsicMesh`, a ``(V, F)`` pair, or an object with vertices and faces.
+    """The mesh meant by a mesh, a ``(V, F)`` pair, or an object with vertices and faces.
 
     Objects are taken by their attributes: ``.vertices`` and ``.faces`` (trimesh), or ``.points`` and
     ``.regular_faces`` (a triangulated pyvista ``PolyData``).
@@ -331,7 +341,9 @@ def as_mesh(mesh: Any) -> TriangleMesh | IntrinsicMesh:
     """
     if isinstance(mesh, TriangleMesh | IntrinsicMesh):
         return mesh
-    if isinstance(mesh, tuple | list) and len(mesh) == 2:
+    if isinstance(mesh, tuple | list):
+        if len(mesh) != 2:
+            raise InvalidMeshError(f"mesh is a {type(mesh).__name__} of {len(mesh)} items; give the pair (V, F).")
         return TriangleMesh(mesh[0], mesh[1])
     if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
         return TriangleMesh(np.asarray(mesh.vertices), np.asarray(mesh.faces))

@@ -61,8 +61,11 @@ class Topology:
 
     @property
     def partners(self) -> Indices:
-        """(3 n_faces,): the other half-edge of the same edge; -1 at the boundary, -2 where more than two
-        faces meet, -3 for faces that take no part.  Partners of misoriented faces run the same way."""
+        """(3 n_faces,): the other half-edge of the same edge, or a negative code.
+
+        The codes are -1 at the boundary, -2 where more than two faces meet and -3 for faces that take no part.
+        Partners of misoriented faces run the same way.
+        """
         return self._halfedge_edges[0]
 
     @cached_property

@@ -62,11 +62,15 @@ def triangle_angles(a, b, c):
 
 
 @kernel
+def difference(vertices, i, j):
+    """Vector from vertex j to vertex i."""
+    return vertices[i, 0] - vertices[j, 0], vertices[i, 1] - vertices[j, 1], vertices[i, 2] - vertices[j, 2]
+
+
+@kernel
 def distance(vertices, i, j):
     """Euclidean distance of vertices i and j."""
-    x = vertices[i, 0] - vertices[j, 0]
-    y = vertices[i, 1] - vertices[j, 1]
-    z = vertices[i, 2] - vertices[j, 2]
+    x, y, z = difference(vertices, i, j)
     return math.sqrt(x * x + y * y + z * z)
 
 
@@ -114,16 +118,16 @@ def vertex_sums_of_faces(values, offsets, corners, out):
 def vertex_normals(vertices, faces, flip, offsets, corners, out):
     """Write unit normals: the mean of the face normals, each weighted by sin / (|a| |b|) at the corner.
 
-    These weights give the exact normal wherever the vertices lie on a sphere (N. Max, 1999).  The normal is 0 where the faces cancel.
+    These weights give the exact normal wherever the vertices lie on a sphere (N. Max, 1999).  The normal is 0
+    where the faces cancel.
     """
     for v in prange(offsets.shape[0] - 1):
         x = y = z = 0.0
         for i in range(offsets[v], offsets[v + 1]):
-            c = corners[i]
-            f, k = c // 3, c % 3
+            f, k = corners[i] // 3, corners[i] % 3
             p, q = faces[f, (k + 1) % 3], faces[f, (k + 2) % 3]
-            ax, ay, az = vertices[p, 0] - vertices[v, 0], vertices[p, 1] - vertices[v, 1], vertices[p, 2] - vertices[v, 2]
-            bx, by, bz = vertices[q, 0] - vertices[v, 0], vertices[q, 1] - vertices[v, 1], vertices[q, 2] - vertices[v, 2]
+            ax, ay, az = difference(vertices, p, v)
+            bx, by, bz = difference(vertices, q, v)
             weight = (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz)
             if weight > 0.0:
                 weight = (-1.0 if flip[f] else 1.0) / weight

@@ -1,0 +1,79 @@
+"""What goes to the terminal: tables on stdout, progress on stderr only where somebody watches."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from rinow.study.surface import SurfaceStudy, field_unit
+
+__all__ = ["print_counts", "print_json", "print_notes", "print_study", "working"]
+
+
+@contextmanager
+def working(task: str) -> Generator[None]:
+    """Show a spinner with the name of the task on a terminal; nothing in a pipe or a log."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    with Console(stderr=True).status(task):
+        yield
+
+
+def print_json(record: Mapping[str, Any]) -> None:
+    """One JSON object on stdout; numbers that are not finite become null."""
+    sys.stdout.write(json.dumps(_plain(record), indent=2, allow_nan=False) + "\n")
+
+
+def _plain(value: Any) -> Any:
+    """The same value in types that JSON has."""
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _console() -> Console:
+    """Stdout; in a pipe wide enough that no cell is cut."""
+    return Console() if sys.stdout.isatty() else Console(width=120)
+
+
+def print_counts(title: str, counts: Mapping[str, Any]) -> None:
+    """A table of two columns."""
+    table = Table("", "value", title=title)
+    for name, value in counts.items():
+        table.add_row(name.replace("_", " "), f"{value:,}" if isinstance(value, int) else f"{value:.6g}")
+    table.columns[1].justify = "right"
+    _console().print(table)
+
+
+def print_study(title: str, study: SurfaceStudy) -> None:
+    """A table of the fields with their units and percentiles, and the status of the vertices."""
+    table = Table(title=title)
+    table.add_column("field")
+    table.add_column("unit")
+    percentiles = study.percentiles()
+    for p in next(iter(percentiles.values())):
+        table.add_column({"0": "least", "50": "median", "100": "greatest"}.get(p, f"{p} %"), justify="right")
+    for name, levels in percentiles.items():
+        table.add_row(name, field_unit(name, study.unit), *(f"{v:.4g}" for v in levels.values()))
+    console = _console()
+    console.print(table)
+    status = ", ".join(f"{n:,} {name}" for name, n in study.status_counts().items())
+    seconds = ", ".join(f"{step} {s:.2f} s" for step, s in study.seconds.items())
+    console.print(f"method {study.curvature.method}; vertices: {status}; {seconds}", highlight=False)
+    print_notes(study.notes)
+
+
+def print_notes(notes: tuple[str, ...]) -> None:
+    """Notes, one a line."""
+    for note in notes:
+        _console().print(f"note: {note}", highlight=False, markup=False)

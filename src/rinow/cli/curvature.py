@@ -1,0 +1,113 @@
+"""`rinow curvature`: the curvature at every vertex of a mesh file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from rinow._version import __version__
+from rinow.cli._terminal import print_json, print_notes, print_study, working
+from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.study.surface import PERCENTILES, SIGN, SurfaceStudy, field_unit, mesh_counts, study_surface
+
+__all__ = ["curvature", "write_picture"]
+
+Field = Literal["gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "spread"]
+Method = Literal["auto", "sectional", "lifted", "wald", "angle_defect"]
+
+
+def curvature(
+    mesh: Path,
+    /,
+    *,
+    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"])] = (),
+    method: Method = "auto",
+    radius: float | None = None,
+    field: Field = "gaussian",
+    picture: Path | None = None,
+    up: Literal["x", "y", "z"] = "z",
+    unit: str = "length",
+    json: bool = False,
+) -> None:
+    """Compute the curvature at every vertex of a mesh, in the order of the file.
+
+    Convex with outward normal is positive.
+
+    Parameters
+    ----------
+    mesh
+        Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.
+    output
+        File to write the mesh and its curvature to; may be repeated.  PLY, VTP, NPZ and GIFTI carry fields.
+    method
+        How to compute the curvature.
+    radius
+        Scale in the unit of length of the file; by default each method chooses its own.
+    field
+        The scalar that becomes `quality` in PLY, and is drawn.
+    picture
+        PNG file to draw four views to.
+    up
+        Axis that points up in the picture.
+    unit
+        Name of the unit of length of the file, such as mm.
+    json
+        Print one JSON object instead of a table.
+    """
+    check_outputs([*output, *([picture] if picture else [])], inputs=[mesh], pictures=[picture] if picture else [])
+    with working(f"reading {mesh.name}"):
+        surface = read_mesh(mesh)
+    with working(f"curvature of {surface.n_vertices:,} vertices"):
+        study = study_surface(surface, method=method, radius=radius, unit=unit)
+    notes: list[str] = []
+    with study.timed("writing"):
+        for path in output:
+            with working(f"writing {path.name}"):
+                notes += write_mesh(path, surface, study.vertex_data(field), units=study.units())
+        if picture:
+            with working(f"drawing {picture.name}"):
+                write_picture(picture, study, field, title=mesh.name, up=up)
+    if json:
+        print_json(_record(mesh, study, field, [*output, *([picture] if picture else [])], notes))
+    else:
+        print_study(str(mesh), study)
+        print_notes(tuple(notes))
+
+
+def write_picture(path: Path, study: SurfaceStudy, field: str, *, title: str, up: str) -> None:
+    """Draw one field of a study to a PNG file."""
+    from rinow.io.atomic import replacing
+    from rinow.report.figures import surface_figure, write_surface_picture
+
+    label = f"{study.units()[field].split(',')[0]}, in {field_unit(field, study.unit)}"
+    figure = surface_figure(
+        study.mesh.vertices,
+        study.mesh.faces,
+        study.fields()[field],
+        label=label,
+        up=up,
+        title=f"{title}: {study.mesh.n_vertices:,} vertices, method {study.curvature.method}",
+    )
+    with replacing(path) as temporary:
+        write_surface_picture(temporary, figure)
+
+
+def _record(mesh: Path, study: SurfaceStudy, field: str, outputs: list[Path], notes: list[str]) -> dict[str, object]:
+    """What --json prints."""
+    return {
+        "rinow": __version__,
+        "input": str(mesh),
+        "method": study.curvature.method,
+        "field": field,
+        "counts": mesh_counts(study.mesh),
+        "status": study.status_counts(),
+        "units": {name: field_unit(name, study.unit) for name in study.fields()},
+        "sign": SIGN,
+        "percentile_levels": PERCENTILES,
+        "percentiles": study.percentiles(),
+        "seconds": study.seconds,
+        "outputs": [str(path) for path in outputs],
+        "notes": [*study.notes, *notes],
+    }

@@ -1,0 +1,55 @@
+"""The command `rinow`: parses arguments, maps errors to one sentence and an exit code."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+from cyclopts import App, CycloptsError
+
+from rinow._version import __version__
+from rinow.errors import RinowError
+
+__all__ = ["app", "main", "run"]
+
+OK, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
+
+app = App(
+    name="rinow",
+    version=__version__,
+    help="Metric geometry of surfaces and finite metric spaces: distances in, curvature and shape distance out.",
+)
+app.command("rinow.cli.demo:demo")
+app.command("rinow.cli.info:info")
+app.command("rinow.cli.curvature:curvature")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code: 0 done, 1 bad input (one sentence on stderr), 2 usage."""
+    try:
+        app(sys.argv[1:] if arguments is None else list(arguments), exit_on_error=False, result_action="return_value")
+    except CycloptsError:
+        return USAGE  # cyclopts has printed what is wrong with the arguments
+    except RinowError as error:
+        return _fail(str(error))
+    except MemoryError:
+        return _fail("the machine has too little memory for this input; simplify the mesh or use a larger machine.")
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader has gone, and that is its right
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except SystemExit as stop:  # --help and --version
+        return stop.code if isinstance(stop.code, int) else OK
+    return OK
+
+
+def _fail(sentence: str) -> int:
+    """Print one line on stderr and return the exit code for bad input."""
+    sys.stderr.write(f"rinow: {' '.join(sentence.split())}\n")
+    return BAD_INPUT
+
+
+def run() -> None:
+    """Entry point of the installed command."""
+    sys.exit(main())

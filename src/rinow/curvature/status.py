@@ -1,0 +1,75 @@
+"""What may be said about the curvature at each vertex of a mesh."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.mesh import IntrinsicMesh, TriangleMesh
+
+__all__ = ["VertexStatus", "vertex_status"]
+
+
+class VertexStatus(IntEnum):
+    """Why a vertex has a curvature or has none; stored as uint8."""
+
+    OK = 0
+    """The value is defined and finite."""
+    BOUNDARY = 1
+    """A one-sided estimate, or nan where the method has none."""
+    ISOLATED = 2
+    """nan: no face has the vertex."""
+    DEGENERATE = 3
+    """nan: every face around the vertex is degenerate."""
+    NONMANIFOLD = 4
+    """The faces around the vertex are not one fan; a value where the method has one, else nan."""
+    NONFINITE = 5
+    """nan: the position is nan or inf."""
+    UNRESOLVED = 6
+    """nan: the data around the vertex do not determine a value."""
+
+
+def vertex_status(mesh: TriangleMesh | IntrinsicMesh) -> NDArray[np.uint8]:
+    """Status of each vertex as far as the mesh alone decides it.
+
+    Where several apply, the first of NONFINITE, ISOLATED, DEGENERATE, NONMANIFOLD, BOUNDARY wins.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh or IntrinsicMesh
+        The surface.  A face with an undefined length is as if it were absent.
+
+    Returns
+    -------
+    status : (n_vertices,) ndarray of uint8
+        Values of `VertexStatus`, never UNRESOLVED.
+
+    Examples
+    --------
+    >>> from rinow import TriangleMesh
+    >>> mesh = TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5]], [[0, 1, 2]])
+    >>> [VertexStatus(s).name for s in vertex_status(mesh)]
+    ['BOUNDARY', 'BOUNDARY', 'BOUNDARY', 'ISOLATED']
+    """
+    topology = mesh.topology
+    status = np.zeros(mesh.n_vertices, np.uint8)
+    status[topology.vertex_is_boundary] = VertexStatus.BOUNDARY
+    status[~topology.vertex_is_manifold] = VertexStatus.NONMANIFOLD
+    degenerate = mesh.face_is_degenerate
+    if degenerate.any():
+        status[~_touched(mesh, ~degenerate)] = VertexStatus.DEGENERATE
+        status[~_touched(mesh, np.isfinite(mesh.face_areas))] = VertexStatus.ISOLATED
+    else:
+        status[~topology.vertex_is_used] = VertexStatus.ISOLATED
+    if isinstance(mesh, TriangleMesh):
+        status[~mesh.vertex_is_finite] = VertexStatus.NONFINITE
+    return status
+
+
+def _touched(mesh: TriangleMesh | IntrinsicMesh, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which vertices have a chosen face."""
+    touched = np.zeros(mesh.n_vertices, np.bool_)
+    touched[mesh.faces[chosen].ravel()] = True
+    return touched

@@ -1,0 +1,97 @@
+"""Static pictures of a field on a surface."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.report.raster import camera, shade
+
+__all__ = ["colour_limit", "surface_figure", "write_surface_picture"]
+
+Floats = NDArray[np.float64]
+UNDEFINED_GREY = (0.35, 0.35, 0.35)
+"""Darker than any shading of the white that stands for 0."""
+CLIP_PERCENTILES = (2.0, 98.0)
+UP = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+def colour_limit(values: Floats) -> float:
+    """Limit of colours symmetric about 0: the larger of the 2nd and 98th percentile in absolute value."""
+    finite = values[np.isfinite(values)]
+    limit = float(np.abs(np.percentile(finite, CLIP_PERCENTILES)).max()) if len(finite) else 0.0
+    return limit if limit > 0.0 else 1.0
+
+
+def surface_figure(
+    vertices: Floats, faces: NDArray[np.intp], values: Floats, *, label: str, title: str = "", up: str = "z"
+) -> Any:
+    """Four views around a surface, coloured by a signed field.
+
+    Parameters
+    ----------
+    vertices : (n_vertices, 3) ndarray of float
+        Positions; faces at non-finite ones are left out.
+    faces : (n_faces, 3) ndarray of intp
+        Triangles.
+    values : (n_vertices,) ndarray of float
+        The field; blue is negative, red positive, grey undefined (nan).
+    label : str
+        Name and unit of the field, for the colour bar.
+    title : str, optional
+        Heading.
+    up : {"x", "y", "z"}
+        Axis that points up in the picture.
+
+    Returns
+    -------
+    figure : matplotlib.figure.Figure
+        Drawn off-screen; no window and no global state of matplotlib is touched.
+    """
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+    from matplotlib.figure import Figure
+
+    limit = colour_limit(values)
+    scale = ScalarMappable(Normalize(-limit, limit), "RdBu_r")
+    colours = scale.to_rgba(np.nan_to_num(values, nan=0.0, posinf=limit, neginf=-limit))[:, :3]
+    colours[np.isnan(values)] = UNDEFINED_GREY
+    figure = Figure(figsize=(9.4, 8.2), dpi=140, layout="constrained")
+    axes = figure.subplots(2, 2)
+    for axis, picture in zip(axes.flat, _views(vertices, faces, colours, up, pixels=560), strict=True):
+        axis.imshow(picture, interpolation="none")
+        axis.set_axis_off()
+    bar = figure.colorbar(scale, ax=axes, extend="both", shrink=0.75, aspect=32, pad=0.02)
+    undefined = int(np.isnan(values).sum())
+    grey = f"; grey: undefined at {undefined:,} of {len(values):,} vertices" if undefined else ""
+    bar.set_label(f"{label}\ncolours clipped at the 2nd and 98th percentile, symmetric about 0{grey}", fontsize=9)
+    if title:
+        figure.suptitle(title, fontsize=12)
+    return figure
+
+
+def _views(vertices: Floats, faces: NDArray[np.intp], colours: Floats, up: str, *, pixels: int) -> list[Floats]:
+    """Pictures from four directions a quarter turn apart, a little from above."""
+    used = np.zeros(len(vertices), np.bool_)
+    used[faces.ravel()] = True
+    V = vertices[used & np.isfinite(vertices).all(axis=1)]
+    if len(V) == 0:
+        return [np.zeros((pixels, pixels, 4))] * 4
+    centre = 0.5 * (V.min(axis=0) + V.max(axis=0))
+    axis = np.array(UP[up])
+    east, north = np.roll(axis, 1), np.roll(axis, 2)
+    views = [
+        camera(np.cos(turn) * east + np.sin(turn) * north + 0.45 * axis, axis)
+        for turn in np.deg2rad([-60.0, 30.0, 120.0, 210.0])
+    ]
+    reach = max(float(np.abs((V - centre) @ view[:2].T).max()) for view in views)
+    zoom = 0.49 * pixels / reach if reach > 0.0 else 1.0
+    return [shade(vertices - centre, faces, colours, view, pixels=pixels, zoom=zoom) for view in views]
+
+
+def write_surface_picture(path: Path, figure: Any) -> None:
+    """Save a figure as PNG."""
+    figure.savefig(path, format="png")
