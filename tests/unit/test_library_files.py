@@ -1,0 +1,291 @@
+"""GIFTI, FreeSurfer, GLB, VTK and NPZ files: against the libraries that own the formats."""
+
+import io
+import struct
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+
+import rinow
+from rinow.errors import FileFormatError, InvalidInputError, InvalidMeshError
+
+V, F, *_ = shapes.tetrahedron()
+K = np.array([0.1, np.nan, -0.0, 1e300])
+
+
+# ------------------------------------------------------------------ GIFTI and FreeSurfer
+
+
+def test_fsaverage(tmp_path):
+    nilearn = find_spec("nilearn")
+    if nilearn is None or nilearn.origin is None:
+        pytest.skip("nilearn carries the surface")
+    folder = Path(nilearn.origin).parent / "datasets" / "data" / "fsaverage5"
+    mesh = rinow.read_mesh(folder / "white_left.gii.gz")
+    assert (mesh.n_vertices, mesh.n_faces, mesh.euler_characteristic) == (10242, 20480, 2)
+    with pytest.raises(FileFormatError, match="holds no surface"):
+        rinow.read_mesh(folder / "curv_left.gii.gz")
+
+
+def test_companions_belong_to_their_surface_only(tmp_path):
+    rinow.write_mesh(tmp_path / "a.surf.gii", (V, F), {"two words": K})
+    rinow.write_mesh(tmp_path / "a.b.surf.gii", (V[:3], F[:1] * 0 + [0, 1, 2]), {"k": K[:3]})
+    notes = rinow.write_mesh(tmp_path / "a.surf.gii", (V, F), {"direction": V})
+    assert "a.direction.shape.gii" in notes[1]
+    assert set(rinow.read_mesh(tmp_path / "a.surf.gii").vertex_data) == {"two words", "direction"}
+    assert set(rinow.read_mesh(tmp_path / "a.b.surf.gii").vertex_data) == {"k"}
+
+
+def test_a_companion_of_another_surface_is_left_out_and_a_damaged_one_named(tmp_path):
+    rinow.write_mesh(tmp_path / "b.surf.gii", (V[:3], [[0, 1, 2]]), {"k": K[:3]})
+    rinow.write_mesh(tmp_path / "a.surf.gii", (V, F))
+    (tmp_path / "b.k.shape.gii").rename(tmp_path / "a.other.shape.gii")
+    mesh = rinow.read_mesh(tmp_path / "a.surf.gii")
+    assert not mesh.vertex_data
+    assert mesh.notes == ("a.other.shape.gii has 3 values for 4 vertices and was left out.",)
+    (tmp_path / "a.other.shape.gii").write_text("<GIFTI")
+    with pytest.raises(FileFormatError, match=r"a\.other\.shape\.gii is no intact GIFTI file"):
+        rinow.read_mesh(tmp_path / "a.surf.gii")
+
+
+def test_companions_of_others_are_named_by_their_file(tmp_path):
+    from nibabel.gifti.gifti import GiftiDataArray, GiftiImage
+
+    rinow.write_mesh(tmp_path / "a.surf.gii", (V, F))
+    array = GiftiDataArray(np.arange(4, dtype=np.float32), intent="NIFTI_INTENT_SHAPE", datatype="NIFTI_TYPE_FLOAT32")
+    GiftiImage(darrays=[array]).to_filename(tmp_path / "a.sulc.shape.gii")
+    assert rinow.read_mesh(tmp_path / "a.surf.gii").vertex_data["sulc"].tolist() == [0, 1, 2, 3]
+
+
+def test_fields_with_one_file_name_are_refused(tmp_path):
+    with pytest.raises(InvalidInputError, match="make the same file name"):
+        rinow.write_mesh(tmp_path / "a.surf.gii", (V, F), {"a b": K, "a_b": K})
+    assert not list(tmp_path.iterdir())
+
+
+def test_freesurfer_is_known_by_its_first_bytes(tmp_path):
+    notes = rinow.write_mesh(tmp_path / "lh.white", (V, F), {"k": K})
+    (tmp_path / "lh.white").rename(tmp_path / "rh.any_name")
+    np.testing.assert_array_equal(rinow.read_mesh(tmp_path / "rh.any_name").faces, F)
+    assert "single precision" in notes[1]
+
+
+@pytest.mark.parametrize(
+    ("content", "fault"),
+    [
+        (b"\xff\xff\xfe" + b"a\n\n" + struct.pack(">2i", 10**9, 10**9), "promises 1000000000 vertices and 1000000000 faces"),
+        (b"\xff\xff\xfe" + b"a\n\n" + struct.pack(">2i", -4, 4), "promises -4 vertices"),
+        (b"\xff\xff\xfe" + b"a", "no intact FreeSurfer file"),
+        (b"\x00\x00\x01", "does not start like a FreeSurfer surface"),
+    ],
+)
+def test_freesurfer_faults(tmp_path, content, fault):
+    (tmp_path / "lh.pial").write_bytes(content)
+    with pytest.raises(FileFormatError, match=fault):
+        rinow.read_mesh(tmp_path / "lh.pial")
+
+
+def test_quadrilaterals_of_freesurfer(tmp_path):
+    def three(n):
+        return n.to_bytes(3, "big")
+
+    points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    data = b"\xff\xff\xff" + three(4) + three(1) + b"".join(struct.pack(">3h", *(100 * x for x in p)) for p in points)
+    (tmp_path / "lh.orig").write_bytes(data + b"".join(map(three, range(4))))
+    mesh = rinow.read_mesh(tmp_path / "lh.orig")
+    assert mesh.vertices.tolist() == [list(p) for p in points]
+    assert mesh.face_areas.sum() == 1
+    assert mesh.notes == ("quadrilaterals were split into triangles.",)
+
+
+# ------------------------------------------------------------------ GLB
+
+
+def test_a_scene_is_joined_in_the_order_of_its_parts(tmp_path):
+    import trimesh
+
+    scene, shift = trimesh.Scene(), np.eye(4)
+    shift[0, 3] = 8
+    part = trimesh.Trimesh(V, F, process=False)
+    scene.add_geometry(part, geom_name="first", node_name="b")
+    scene.add_geometry(part, geom_name="second", node_name="a", transform=shift)
+    scene.add_geometry(trimesh.PointCloud(V))
+    (tmp_path / "a.glb").write_bytes(scene.export(file_type="glb"))
+    mesh = rinow.read_mesh(tmp_path / "a.glb")
+    np.testing.assert_array_equal(mesh.vertices, np.concatenate([V, V + [8, 0, 0]]))
+    np.testing.assert_array_equal(mesh.faces, np.concatenate([F, F + 4]))
+    assert "2 parts of the scene were joined" in mesh.notes[0]
+    assert mesh.notes[1] == "1 parts of the scene without triangles were left out."
+
+
+# ------------------------------------------------------------------ VTK
+
+
+@pytest.fixture
+def polydata():
+    pyvista = pytest.importorskip("pyvista")
+    points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 0.1]])
+    data = pyvista.PolyData(points, faces=np.array([4, 0, 1, 2, 3, 3, 0, 1, 4]), lines=np.array([2, 0, 1]), strips=np.array([4, 0, 1, 4, 2]))
+    data.point_data["two words"] = np.array([0.1, np.nan, 3, 4, 5])
+    data.point_data["rgb"] = np.arange(15, dtype=np.uint8).reshape(5, 3)
+    data.point_data["uv"] = np.arange(10.0).reshape(5, 2)
+    data.point_data["on"] = np.arange(5) > 2
+    data.point_data["names"] = ["a", "b c", "%", "d", ""]
+    data.point_data["vector"] = points.astype(np.float32)
+    data.cell_data["cell"] = np.arange(4)
+    data.point_data.active_scalars_name, data.point_data.active_vectors_name = "two words", "vector"
+    data.field_data["note"] = ["one {", "two\nlines"]
+    return data
+
+
+@pytest.mark.parametrize("version", [42, 51])
+@pytest.mark.parametrize("binary", [False, True])
+def test_legacy_files_are_read_as_vtk_writes_them(tmp_path, polydata, version, binary):
+    from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
+
+    writer = vtkPolyDataWriter()
+    writer.SetFileName(str(tmp_path / "a.vtk"))
+    writer.SetFileVersion(version)
+    writer.SetInputData(polydata)
+    writer.SetFileType(2 if binary else 1)
+    writer.Write()
+    check_polydata(rinow.read_mesh(tmp_path / "a.vtk"), polydata)
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_xml_files_are_read_as_vtk_writes_them(tmp_path, polydata, binary):
+    polydata.save(tmp_path / "a.vtp", binary=binary)
+    check_polydata(rinow.read_mesh(tmp_path / "a.vtp"), polydata)
+
+
+def check_polydata(mesh, polydata):
+    np.testing.assert_array_equal(mesh.vertices, polydata.points)
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3], [0, 1, 4], [0, 1, 4], [2, 4, 1]]
+    assert "split" in mesh.notes[0]
+    assert "2 triangles were taken from triangle strips" in mesh.notes[1]
+    assert set(mesh.vertex_data) == {"two words", "rgb", "uv", "on", "vector"}
+    for name, values in mesh.vertex_data.items():
+        np.testing.assert_array_equal(values, polydata.point_data[name])
+        assert values.dtype.kind == polydata.point_data[name].dtype.kind or name == "on"
+
+
+def test_legacy_sections_by_hand(tmp_path):
+    text = """# vtk DataFile Version 2.0
+by hand
+ASCII
+DATASET POLYDATA
+POINTS 3 float
+0 0 0
+1 0 0 0 1 0
+METADATA
+INFORMATION 1
+NAME a LOCATION b
+
+POLYGONS 1 4
+3 0 1 2
+POINT_DATA 3
+COLOR_SCALARS rgb 3
+0 0 0 1 1 1 .5 .5 .5
+SCALARS k int 1
+LOOKUP_TABLE mine
+4 5 6
+LOOKUP_TABLE mine 1
+0 0 0 1
+NORMALS n float
+0 0 1 0 0 1 0 0 1
+TEXTURE_COORDINATES uv 2 float
+0 0 1 0 0 1
+"""
+    (tmp_path / "a.vtk").write_text(text)
+    data = rinow.read_mesh(tmp_path / "a.vtk").vertex_data
+    assert {name: values.shape for name, values in data.items()} == {"rgb": (3, 3), "k": (3,), "n": (3, 3), "uv": (3, 2)}
+    assert data["k"].tolist() == [4, 5, 6]
+    for old, new, fault in (
+        ("POLYDATA", "UNSTRUCTURED_GRID", "holds DATASET UNSTRUCTURED_GRID; extract its surface"),
+        ("ASCII", "NEITHER", "does not start like a legacy VTK file"),
+        ("3 0 1 2", "3 0 1 3", "face 0 names vertex 3"),
+        ("3 0 1 2", "9 0 1 2", "end inside cell 0 of the 1"),
+        ("NORMALS", "NONSENSE", "has no meaning"),
+        ("LOOKUP_TABLE mine\n4", "4", "has no meaning"),
+        ("int 1", "bytes 1", "numbers of type bytes are unknown"),
+        ("0 0 1 0 0 1 0 0 1", "0 0 1 0 0 one 0 0 1", "'one' where a number belongs"),
+        ("\n0 0 1 0 0 1\n", "\n0 0 1\n", "an array of 6 numbers has 3"),
+        ("POINTS 3 float", "POINTS 1000000000000 float", "an array of 3000000000000 numbers has"),
+        ("POINTS 3 float", "POINTS -3 float", "-9 numbers of type float are unknown"),
+    ):
+        (tmp_path / "a.vtk").write_text(text.replace(old, new))
+        with pytest.raises(FileFormatError, match=fault):
+            rinow.read_mesh(tmp_path / "a.vtk")
+
+
+def test_a_damaged_xml_file_is_one_error_and_vtk_is_silent(tmp_path, capfd):
+    pytest.importorskip("pyvista")
+    rinow.write_mesh(tmp_path / "a.vtp", (V, F), {"k": K})
+    whole = (tmp_path / "a.vtp").read_bytes()
+    for size in range(1, len(whole) - 10, 97):
+        (tmp_path / "a.vtp").write_bytes(whole[:size])
+        with pytest.raises(FileFormatError, match="VTK says"):
+            rinow.read_mesh(tmp_path / "a.vtp")
+    assert capfd.readouterr() == ("", "")
+
+
+def test_other_xml_data_are_named(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    pyvista.PolyData(V).save(tmp_path / "points.vtp")
+    with pytest.raises(InvalidMeshError, match="no face"):
+        rinow.read_mesh(tmp_path / "points.vtp")
+
+
+# ------------------------------------------------------------------ NPZ
+
+
+def test_an_archive_of_numpy_is_read(tmp_path):
+    quads = np.array([[0, 1, 2, 3]], np.uint16)
+    np.savez_compressed(tmp_path / "a.npz", V=V.astype(np.float32), F=quads, k=K, m=np.eye(4), cells=np.zeros(7), name="x")
+    mesh = rinow.read_mesh(tmp_path / "a.npz")
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+    assert set(mesh.vertex_data) == {"k", "m"}
+    assert "split" in mesh.notes[0]
+    assert mesh.notes[1] == "arrays of another length were left out: cells, name."
+
+
+@pytest.mark.parametrize(
+    ("arrays", "fault"),
+    [
+        ({"V": V}, "holds V but no F"),
+        ({"V": V, "F": F.astype(float)}, "and type float64"),
+        ({"V": V[0], "F": F}, r"V has shape \(3,\)"),
+        ({"V": V[:, :2], "F": F}, r"vertices has shape \(4, 2\)"),
+        ({"V": V, "F": F + 1}, "face 1 names vertex 4|face 0 names vertex 4"),
+        ({"V": V, "F": F, "k": np.array([None] * 4)}, "k.npy is pickled"),
+    ],
+)
+def test_npz_faults(tmp_path, arrays, fault):
+    np.savez(tmp_path / "a.npz", allow_pickle=True, **arrays)
+    with pytest.raises(FileFormatError, match=fault):
+        rinow.read_mesh(tmp_path / "a.npz")
+
+
+def test_an_array_larger_than_its_file_takes_no_memory(tmp_path):
+    import zipfile
+
+    header = io.BytesIO()
+    np.lib.format.write_array_header_1_0(header, {"descr": "<f8", "fortran_order": False, "shape": (10**12, 3)})
+    with zipfile.ZipFile(tmp_path / "a.npz", "w") as archive:
+        archive.writestr("V.npy", header.getvalue() + bytes(100))
+    with pytest.raises(FileFormatError, match=r"V\.npy is pickled or not as large as its header says"):
+        rinow.read_mesh(tmp_path / "a.npz")
+
+
+def test_no_faces_in_an_archive_is_no_mesh(tmp_path):
+    np.savez(tmp_path / "a.npz", V=V, F=np.empty((0, 3)))
+    with pytest.raises(InvalidMeshError, match="no face"):
+        rinow.read_mesh(tmp_path / "a.npz")
+
+
+def test_reserved_names_are_refused(tmp_path):
+    with pytest.raises(InvalidInputError, match="'V' has a name that NPZ files reserve"):
+        rinow.write_mesh(tmp_path / "a.npz", (V, F), {"V": K})
