@@ -15,3 +15,14 @@ DEGENERATE_AREA = 1e-12
 WELD_DISTANCE = 1e-5
 """Vertices closer than this share of the bounding-box diagonal are one point of a triangle soup (exact
 equality leaves hundreds of open edges on CAD parts)."""
+
+EMBEDDING = 1e-9
+"""Distances of embedded points may differ from the given ones by this share of the largest distance."""
+
+FLAT_SIMPLEX = 2e-15
+"""A simplex is flat when its squared height is below this share of its longest edge squared: four times the largest
+rounding error seen in 300,000 flat simplices of dimension 3 to 9."""
+
+LINEAR_TRIPLE = 1e-13
+"""A triple is linear when its excess over its longest side is below this: what rounding leaves of an equality, while
+an excess above it still decides about the curvature, by its square root."""

@@ -36,14 +36,14 @@ def triangle_angle(a, b, c):
         return math.pi / 3.0
     if b == 0.0 or c == 0.0:
         return math.pi / 2.0
-    s_b = max(_excess(b, a, c), 0.0)
-    s_c = max(_excess(c, a, b), 0.0)
-    s_a = max(_excess(a, b, c), 0.0)
+    s_b = max(excess(b, a, c), 0.0)
+    s_c = max(excess(c, a, b), 0.0)
+    s_a = max(excess(a, b, c), 0.0)
     return 2.0 * math.atan2(math.sqrt(s_b) * math.sqrt(s_c), math.sqrt(a + (b + c)) * math.sqrt(s_a))
 
 
 @kernel
-def _excess(a, b, c):
+def excess(a, b, c):
     """Excess b + c - a, with the two closest lengths subtracted first."""
     return c - (a - b) if b >= c else b - (a - c)
 
@@ -82,6 +82,19 @@ def face_edge_lengths(vertices, faces, out):
         out[f, 0] = distance(vertices, j, k)
         out[f, 1] = distance(vertices, k, i)
         out[f, 2] = distance(vertices, i, j)
+
+
+@parallel_kernel
+def signed_volumes(vertices, faces, face_used, flip, origin, out):
+    """Write six times the volume of the tetrahedra from a point to the faces, turned as `flip` says; 0 if unused."""
+    for f in prange(faces.shape[0]):
+        out[f] = 0.0
+        if face_used[f]:
+            i, j, k = faces[f, 0], faces[f, 2 if flip[f] else 1], faces[f, 1 if flip[f] else 2]
+            ax, ay, az = vertices[i, 0] - origin[0], vertices[i, 1] - origin[1], vertices[i, 2] - origin[2]
+            bx, by, bz = vertices[j, 0] - origin[0], vertices[j, 1] - origin[1], vertices[j, 2] - origin[2]
+            cx, cy, cz = vertices[k, 0] - origin[0], vertices[k, 1] - origin[1], vertices[k, 2] - origin[2]
+            out[f] = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
 
 
 @parallel_kernel

@@ -1,0 +1,55 @@
+"""What a user should know about a mesh before reading its curvature, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rinow import tolerances
+from rinow.mesh import IntrinsicMesh, TriangleMesh
+
+__all__ = ["mesh_notes", "weld_notes"]
+
+
+def weld_notes(before: int, after: int) -> tuple[str, ...]:
+    """What welding a soup of `before` vertices into one of `after` did."""
+    if before == after:
+        return ()
+    return (
+        f"The faces share no edge: vertices closer than {tolerances.WELD_DISTANCE:g} of the diagonal were taken as one "
+        f"for the computation, {after} points for {before} vertices.",
+    )
+
+
+def mesh_notes(mesh: TriangleMesh | IntrinsicMesh, *, oriented: bool) -> tuple[str, ...]:
+    """Faults of a mesh that concern its curvature; those of its orientation only if the method looks at it."""
+    t = mesh.topology
+    notes: list[str] = []
+    n_unused = int(np.count_nonzero(~t.face_used))
+    if n_unused:
+        notes.append(f"{n_unused} of {mesh.n_faces} faces take no part: a repeated vertex or an undefined length.")
+    if isinstance(mesh, TriangleMesh):
+        n_seam = _seam_size(mesh)
+        if n_seam:
+            notes.append(f"{n_seam} boundary vertices lie on others: these seams are open; weld them to close them.")
+        if oriented:
+            notes += _orientation_notes(mesh)
+    return tuple(notes)
+
+
+def _seam_size(mesh: TriangleMesh) -> int:
+    """Number of boundary vertices at the same place as another one."""
+    places, counts = np.unique(mesh.vertices[mesh.boundary_vertices], axis=0, return_counts=True)
+    return int(counts[counts > 1].sum()) if len(places) else 0
+
+
+def _orientation_notes(mesh: TriangleMesh) -> list[str]:
+    t = mesh.topology
+    notes: list[str] = []
+    n_turned = int(np.count_nonzero(t.face_flips))
+    if n_turned:
+        notes.append(f"{n_turned} faces were turned to agree with their neighbours.")
+    if not t.is_orientable:
+        notes.append("The surface has no consistent orientation: the sign of the mean curvature changes along a cut.")
+    elif np.count_nonzero(mesh.outward_flips) > n_turned:
+        notes.append("The faces of the closed surface pointed inwards; the normals were turned outwards.")
+    return notes

@@ -1,0 +1,59 @@
+"""A mesh as the fits see it: positions, smoothed normals, neighbours, and the spacing of the vertices."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.kernels import monge, stencils
+from rinow.mesh import TriangleMesh
+
+__all__ = ["N_BLOCKS", "empty_frames", "local_spacing", "stencil_surface"]
+
+N_BLOCKS = 16
+"""Pieces a kernel cuts its vertices into; each has scratch of its own."""
+
+
+def stencil_surface(mesh: TriangleMesh) -> stencils.Surface:
+    """Positions, neighbours, and area-weighted normals averaged over each ring (0 where there is no face).
+
+    Area vectors, unlike angles and unit normals, are not upset by slivers.  Fits correct the remaining tilt.
+    Without a consistent orientation the faces of each star are made to agree among themselves.
+    """
+    t = mesh.topology
+    align = not t.is_orientable
+    vectors, normals = np.empty_like(mesh.vertices), np.empty_like(mesh.vertices)
+    stencils.vertex_area_vectors(
+        mesh.vertices, mesh.faces, mesh.outward_flips, align, t.corner_offsets, t.vertex_corners, vectors
+    )
+    stencils.ring_directions(vectors, align, t.neighbour_offsets, t.neighbours, normals)
+    return stencils.Surface(mesh.vertices, normals, t.neighbour_offsets, t.neighbours)
+
+
+def local_spacing(mesh: TriangleMesh) -> NDArray[np.float64]:
+    """(n_vertices,): distance of neighbours, averaged around each vertex; 0 without a face.
+
+    It is the larger of the mean edge over one ring and the edge of equilateral triangles with the mean area per
+    vertex over two rings.  The first sees to it that a stretched mesh has enough rows of vertices in a ball
+    of a few spacings, the second that a mesh with slivers and tiny triangles has enough vertices.
+    """
+    t = mesh.topology
+    edges = np.empty(mesh.n_vertices)
+    stencils.mean_edge_lengths(mesh.vertices, t.neighbour_offsets, t.neighbours, edges)
+    edges = _ring_sums(mesh, edges) / (np.diff(t.neighbour_offsets) + 1)
+    shares = np.where(t.vertex_is_boundary, 0.5, 1.0)
+    areas = _ring_sums(mesh, _ring_sums(mesh, mesh.vertex_areas)) / _ring_sums(mesh, _ring_sums(mesh, shares))
+    return np.maximum(edges, np.sqrt(2.0 / np.sqrt(3.0) * areas))
+
+
+def empty_frames(n: int) -> monge.PrincipalFrames:
+    """Principal frames of n vertices, all nan."""
+    return monge.PrincipalFrames(
+        np.full(n, np.nan), np.full(n, np.nan), *(np.full((n, 3), np.nan) for _ in range(3))
+    )
+
+
+def _ring_sums(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    sums = np.empty(mesh.n_vertices)
+    stencils.ring_sums(values, mesh.topology.neighbour_offsets, mesh.topology.neighbours, sums)
+    return sums

@@ -1,0 +1,259 @@
+"""Curvature at the vertices of a triangulated surface."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow._executor import Executor
+from rinow.curvature.angle_defect import angle_defect
+from rinow.curvature.estimate import Estimate
+from rinow.curvature.lifted import lifted
+from rinow.curvature.notes import mesh_notes, weld_notes
+from rinow.curvature.sectional import sectional
+from rinow.curvature.status import VertexStatus, vertex_status
+from rinow.curvature.wald import wald
+from rinow.errors import InvalidInputError
+from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh, as_triangle_mesh
+
+__all__ = ["SurfaceCurvature", "surface_curvature"]
+
+Floats = NDArray[np.float64]
+
+INTRINSIC = {"angle_defect": angle_defect, "wald": wald}
+METHODS = ("auto", "sectional", "lifted", "wald", "angle_defect")
+QUALITIES = ("best", "fast")
+POWERS = {"gaussian": 2, "spread": 2, "mean": 1, "k1": 1, "k2": 1, "curvedness": 1, "radius": -1}
+"""Power of 1/length of each field that has a unit."""
+SAFE_SCALE = 2.0**100
+"""Lengths between this and its inverse are computed as they are; others after a change of the unit."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceCurvature:
+    """Curvature at every vertex of a surface, in the order of its vertices; nan where undefined.
+
+    Attributes
+    ----------
+    gaussian : (n_vertices,) ndarray of float
+        Gaussian curvature, in 1/length².
+    mean, k1, k2 : (n_vertices,) ndarray of float
+        Mean and principal curvatures, in 1/length, k1 >= k2.  Convex with outward normal is positive.
+    shape_index : (n_vertices,) ndarray of float
+        (2/π) atan((k1 + k2)/(k1 - k2)): 1 for a cap, 0.5 a ridge, 0 a saddle or a plane, -1 a cup.
+    curvedness : (n_vertices,) ndarray of float
+        √((k1² + k2²)/2), in 1/length.
+    direction1, direction2 : (n_vertices, 3) ndarray of float
+        Unit principal directions, orthogonal to each other; their signs mean nothing.
+    status : (n_vertices,) ndarray of uint8
+        Values of `VertexStatus`.  With OK, `gaussian` is finite.
+    radius : (n_vertices,) ndarray of float
+        Scale the values are taken from, in units of length.
+    spread : (n_vertices,) ndarray of float
+        One standard error of `gaussian`, as the method can tell from the data.
+    method : str
+        The method used.
+    notes : tuple of str
+        What was found and done about the mesh, one sentence each.
+    """
+
+    gaussian: Floats
+    mean: Floats
+    k1: Floats
+    k2: Floats
+    shape_index: Floats
+    curvedness: Floats
+    direction1: Floats
+    direction2: Floats
+    status: NDArray[np.uint8]
+    radius: Floats
+    spread: Floats
+    method: str
+    notes: tuple[str, ...] = ()
+
+    def _repr_html_(self) -> str:
+        """Counts of each status and quartiles of each field, as a table."""
+        names = [s.name for s in VertexStatus for _ in range(int(np.any(self.status == s)))]
+        counts = ", ".join(f"{np.count_nonzero(self.status == VertexStatus[n])} {n}" for n in names)
+        rows = [f"<caption>Curvature by {self.method}: {counts}</caption>", _row("th", "field", QUARTILES)]
+        for name in ("gaussian", *(f for f in POWERS if f not in ("gaussian", "spread", "radius"))):
+            values = getattr(self, name)
+            finite = values[np.isfinite(values)]
+            if len(finite):
+                rows.append(_row("td", name, [f"{q:.4g}" for q in np.percentile(finite, (0, 25, 50, 75, 100))]))
+        return f"<table>{''.join(rows)}</table>"
+
+
+QUARTILES = ("min", "25 %", "50 %", "75 %", "max")
+
+
+def _row(tag: str, first: str, rest: Any) -> str:
+    return f"<tr><th>{first}</th>{''.join(f'<{tag}>{x}</{tag}>' for x in rest)}</tr>"
+
+
+def surface_curvature(
+    mesh: Any,
+    *,
+    method: str = "auto",
+    quality: str = "best",
+    radius: float | None = None,
+    progress: Callable[[int, int], object] | None = None,
+    executor: Executor | None = None,
+) -> SurfaceCurvature:
+    r"""Gaussian, mean and principal curvatures at the vertices of a triangulated surface.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh, IntrinsicMesh, (V, F) pair, or object with vertices and faces
+        The surface.  Vertices may be unused or not finite, faces degenerate, misoriented or not manifold: `status`
+        tells where no value is defined.  A soup of separate triangles is welded for the computation.
+    method : {"auto", "sectional", "lifted", "wald", "angle_defect"}, optional
+        "sectional" fits the circles through each vertex and the others in a ball; "lifted" takes the angles of the
+        star after its edges were lifted to arcs; "wald" is the embedding curvature of the star; "angle_defect" is
+        the angle defect over a third of the area.  The last two need edge lengths only and give `gaussian` only.
+        "auto" is the most accurate of them that the mesh and `quality` allow.
+    quality : {"best", "fast"}, optional
+        What "auto" prefers: "sectional" or "lifted" for a mesh with positions.
+    radius : float, optional
+        Radius of the balls of "sectional", positive, in the unit of length; by default four local spacings.
+    progress : callable, optional
+        Called with the number of vertices done and their total.
+    executor : Executor, optional
+        Where blocks of vertices run: any pool with a `map`.  By default they run here, on the threads of numba.
+
+    Returns
+    -------
+    curvature : SurfaceCurvature
+        Values in the order of the vertices.
+
+    Raises
+    ------
+    InvalidMeshError
+        If `mesh` is none of the above, or has no positions and `method` needs them.
+    InvalidInputError
+        If `method` or `quality` is unknown, or `radius` is not positive or not for this method.
+
+    Notes
+    -----
+    All values are unchanged by rotations, shifts and renumbering, up to rounding, and scale as powers of length.
+    Lengths from 1e-150 to 1e150 neither overflow nor underflow.  Results do not depend on the number of threads.
+
+    References
+    ----------
+    .. [1] E. Saucan, "Surface triangulation: the metric approach", arXiv:cs/0401023.
+
+    Examples
+    --------
+    A sphere of radius 2 has Gaussian curvature 1/4 and mean curvature 1/2 everywhere:
+
+    >>> import numpy as np
+    >>> t = (1 + 5**0.5) / 2
+    >>> V = np.array([(0, s, u * t) for s in (-1, 1) for u in (-1, 1)])
+    >>> V = np.concatenate([np.roll(V, k, axis=1) for k in range(3)]) * 2 / (1 + t * t) ** 0.5
+    >>> from scipy.spatial import ConvexHull
+    >>> curvature = surface_curvature((V, ConvexHull(V).simplices))
+    >>> bool(np.allclose(curvature.gaussian, 0.25) and np.allclose(curvature.mean, 0.5))
+    True
+    """
+    surface, unit = _with_safe_lengths(as_mesh(mesh))
+    chosen = _chosen_method(method, quality, surface)
+    if radius is not None:
+        radius = _checked_radius(radius, chosen) * unit
+    notes: tuple[str, ...] = ()
+    index = None
+    if isinstance(surface, TriangleMesh) and surface.is_soup:
+        n = surface.n_vertices
+        surface, index = surface.welded()
+        notes = weld_notes(n, surface.n_vertices)
+    estimate = _estimate(surface, chosen, radius, progress, executor)
+    result = _assembled(estimate, vertex_status(surface), chosen)
+    notes += mesh_notes(surface, oriented=chosen not in INTRINSIC)
+    return replace(_relabelled(_rescaled(result, unit), index), notes=notes)
+
+
+def _with_safe_lengths(mesh: TriangleMesh | IntrinsicMesh) -> tuple[TriangleMesh | IntrinsicMesh, float]:
+    """A mesh whose lengths have powers that neither overflow nor underflow, and its lengths over the given ones."""
+    longest = float(np.fmax.reduce(mesh.edge_lengths, axis=None))
+    if not longest > 0.0 or 1.0 / SAFE_SCALE < longest < SAFE_SCALE:
+        return mesh, 1.0
+    unit = 2.0 ** -np.floor(np.log2(longest))
+    if isinstance(mesh, IntrinsicMesh):
+        return IntrinsicMesh(mesh.faces, mesh.edge_lengths * unit, mesh.n_vertices), unit
+    with np.errstate(over="ignore"):
+        return TriangleMesh(mesh.vertices * unit, mesh.faces), unit
+
+
+def _chosen_method(method: str, quality: str, mesh: TriangleMesh | IntrinsicMesh) -> str:
+    for name, value, allowed in (("method", method, METHODS), ("quality", quality, QUALITIES)):
+        if value not in allowed:
+            raise InvalidInputError(f"{name} = {value!r} is unknown; choose from {', '.join(allowed)}.")
+    if method != "auto":
+        return method
+    if isinstance(mesh, IntrinsicMesh):
+        return "wald"
+    return "sectional" if quality == "best" else "lifted"
+
+
+def _checked_radius(radius: float, method: str) -> float:
+    if not (np.isscalar(radius) and np.isreal(radius) and 0.0 < radius < np.inf):
+        raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
+    if method != "sectional":
+        raise InvalidInputError(
+            f"radius = {radius!r} is not for method {method!r}, which uses the star of each vertex; leave it out."
+        )
+    return float(radius)
+
+
+def _estimate(
+    mesh: TriangleMesh | IntrinsicMesh,
+    method: str,
+    radius: float | None,
+    progress: Callable[[int, int], object] | None,
+    executor: Executor | None,
+) -> Estimate:
+    if method == "sectional":
+        return sectional(as_triangle_mesh(mesh), radius=radius, progress=progress, executor=executor)
+    estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
+    if progress is not None:
+        progress(mesh.n_vertices, mesh.n_vertices)
+    return estimate
+
+
+def _assembled(estimate: Estimate, status: NDArray[np.uint8], method: str) -> SurfaceCurvature:
+    """The result in the unit and order of the mesh computed with."""
+    finite = np.isfinite(estimate.gaussian)
+    status[(status == VertexStatus.OK) & ~finite] = VertexStatus.UNRESOLVED
+    undefined = ~finite | np.isin(status, (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE))
+    n = len(status)
+    values: dict[str, Floats] = {}
+    for field in fields(estimate):
+        value = getattr(estimate, field.name)
+        if value is None:
+            value = np.broadcast_to(np.nan, (n, 3) if field.name.startswith("direction") else (n,))
+        else:
+            value[undefined] = np.nan
+        values[field.name] = value
+    k1, k2 = values["k1"], values["k2"]
+    values["shape_index"] = 2.0 / np.pi * np.arctan2(k1 + k2, k1 - k2)
+    values["curvedness"] = np.sqrt(0.5 * (k1 * k1 + k2 * k2))
+    return SurfaceCurvature(**values, status=status, method=method)
+
+
+def _rescaled(result: SurfaceCurvature, unit: float) -> SurfaceCurvature:
+    """The result for lengths divided by `unit`."""
+    if unit == 1.0:
+        return result
+    with np.errstate(over="ignore"):
+        return replace(result, **{name: getattr(result, name) * unit**power for name, power in POWERS.items()})
+
+
+def _relabelled(result: SurfaceCurvature, index: NDArray[np.intp] | None) -> SurfaceCurvature:
+    """The result with row index[v] for vertex v."""
+    if index is None:
+        return result
+    rows = {f.name: getattr(result, f.name) for f in fields(result)}
+    return replace(result, **{name: value[index] for name, value in rows.items() if isinstance(value, np.ndarray)})

@@ -1,0 +1,91 @@
+"""Quadrics fitted to the circles through a vertex and the vertices of its two rings.
+
+The circle that touches the tangent plane at p and runs through a neighbour at distance d and height z has the
+curvature 2 z / d^2.  The fit gives each of these curvatures the same weight, so each height the weight 1/d^4.
+"""
+
+import math
+
+import numpy as np
+
+from rinow.kernels import monge, stencils
+from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels.stencils import SOFTENING
+
+PIVOT = 1e-6
+"""A term depends on the earlier ones when this share of its norm is left."""
+
+
+@kernel
+def quadric_moments(points, n):
+    """Weighted sums over the points: products of degree 2, 3, 4, and the height times products of degree 1 and 2."""
+    xx = xy = yy = xxx = xxy = xyy = yyy = x4 = x3y = x2y2 = xy3 = y4 = 0.0
+    zx = zy = zxx = zxy = zyy = 0.0
+    for i in range(n):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        d2 = x * x + y * y + z * z + SOFTENING
+        w = 1.0 / (d2 * d2)
+        a, b, c = w * x * x, w * x * y, w * y * y
+        xx, xy, yy = xx + a, xy + b, yy + c
+        xxx, xxy, xyy, yyy = xxx + a * x, xxy + b * x, xyy + b * y, yyy + c * y
+        x4, x3y, x2y2, xy3, y4 = x4 + a * x * x, x3y + a * x * y, x2y2 + b * x * y, xy3 + c * x * y, y4 + c * y * y
+        zx, zy, zxx, zxy, zyy = zx + w * z * x, zy + w * z * y, zxx + a * z, zxy + b * z, zyy + c * z
+    return (xx, xy, yy), (xxx, xxy, xyy, yyy), (x4, x3y, x2y2, xy3, y4), (zx, zy), (zxx, zxy, zyy)
+
+
+@kernel
+def solve_three(a, b, c, d, e, f, x, y, z):
+    """Solution of the symmetric positive system ((a, b, c), (b, d, e), (c, e, f)), and its pivots."""
+    l1, l2 = b / a, c / a
+    p = d - l1 * b
+    q = e - l1 * c
+    l3 = q / p
+    r = f - l2 * c - l3 * q
+    y -= l1 * x
+    w = (z - l2 * x - l3 * y) / r
+    v = y / p - l3 * w
+    return x / a - l1 * v - l2 * w, v, w, p, r
+
+
+@kernel
+def fit_quadric(points, n, coefficients):
+    """Write c of z = c0 x + c1 y + c2 x^2 + c3 x y + c4 y^2; whether the points determine it.
+
+    The slopes are eliminated first.  Fewer than six points leave them 0: Euler's formula in the given tangent plane.
+    """
+    (xx, xy, yy), t, q, (zx, zy), g = quadric_moments(points, n)
+    det = xx * yy - xy * xy
+    tilted = n > 5 and det > PIVOT * xx * yy
+    ia, ib, ic = (yy / det, -xy / det, xx / det) if tilted else (0.0, 0.0, 0.0)
+    a0, a1, a2 = ia * t[0] + ib * t[1], ia * t[1] + ib * t[2], ia * t[2] + ib * t[3]
+    b0, b1, b2 = ib * t[0] + ic * t[1], ib * t[1] + ic * t[2], ib * t[2] + ic * t[3]
+    s00 = q[0] - a0 * t[0] - b0 * t[1]
+    if n < 3 or not s00 > PIVOT * q[0]:
+        return False
+    s11, s22 = q[2] - a1 * t[1] - b1 * t[2], q[4] - a2 * t[2] - b2 * t[3]
+    s01, s02, s12 = q[1] - a0 * t[1] - b0 * t[2], q[2] - a0 * t[2] - b0 * t[3], q[3] - a1 * t[2] - b1 * t[3]
+    g0, g1, g2 = g[0] - a0 * zx - b0 * zy, g[1] - a1 * zx - b1 * zy, g[2] - a2 * zx - b2 * zy
+    c2, c3, c4, p1, p2 = solve_three(s00, s01, s02, s11, s12, s22, g0, g1, g2)
+    if not (p1 > PIVOT * q[2] and p2 > PIVOT * q[4]):
+        return False
+    zx, zy = zx - c2 * t[0] - c3 * t[1] - c4 * t[2], zy - c2 * t[1] - c3 * t[2] - c4 * t[3]
+    coefficients[0], coefficients[1] = ia * zx + ib * zy, ib * zx + ic * zy
+    coefficients[2], coefficients[3], coefficients[4] = c2, c3, c4
+    return True
+
+
+@parallel_kernel
+def ring_quadrics(surface, n_blocks, frames):
+    """Write the principal frames of the quadrics fitted to the two rings; rows without one stay as they are."""
+    n_vertices = surface.vertices.shape[0]
+    for block in prange(n_blocks):
+        members, marks = np.empty(n_vertices + 1, np.int32), np.zeros(n_vertices, np.int32)
+        points, coefficients = np.empty((n_vertices, 3)), np.empty(5)
+        for v in range(n_vertices * block // n_blocks, n_vertices * (block + 1) // n_blocks):
+            n, reach = stencils.two_rings(v, surface, members, marks)
+            normal = (surface.normals[v, 0], surface.normals[v, 1], surface.normals[v, 2])
+            if reach > 0.0 and normal != (0.0, 0.0, 0.0):
+                unit = math.sqrt(reach)
+                stencils.local_coordinates(members, n, unit, normal, surface.vertices, points)
+                if fit_quadric(points, n - 1, coefficients):
+                    monge.write_principal_frame(v, coefficients, unit, normal, frames)

@@ -1,0 +1,170 @@
+"""Neighbourhoods of a vertex, grown over the edges of a mesh, and their coordinates over its tangent plane."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from rinow.kernels import monge
+from rinow.kernels._jit import kernel, parallel_kernel, prange
+
+SOFTENING = 0.01
+"""Added to squared distances, in squared radii of the stencil: two vertices that nearly coincide tell no curvature."""
+FOLD_COSINE = 0.2
+"""Metric balls stop where the normal turns by more than the angle with this cosine: a graph over the tangent
+plane has no overhang, and a sheet folded back is another part of the surface."""
+CANCELLED = 0.1
+"""A sum of vectors shorter than this share of the first one has no direction of its own."""
+TINY = 1e-300
+"""Smallest length a vector is divided by."""
+
+
+class Surface(NamedTuple):
+    """Positions (n, 3), unit normals (n, 3) and compressed rows of neighbours."""
+
+    vertices: np.ndarray
+    normals: np.ndarray
+    offsets: np.ndarray
+    neighbours: np.ndarray
+
+
+@kernel
+def add_aligned(total, vector, align):
+    """Add a vector to a total; with `align` its opposite where that makes the smaller angle."""
+    if align and total[0] * vector[0] + total[1] * vector[1] + total[2] * vector[2] < 0.0:
+        return total[0] - vector[0], total[1] - vector[1], total[2] - vector[2]
+    return total[0] + vector[0], total[1] + vector[1], total[2] + vector[2]
+
+
+@kernel
+def area_vector(vertices, v, p, q):
+    """Doubled area vector of a triangle."""
+    ax, ay, az = vertices[p, 0] - vertices[v, 0], vertices[p, 1] - vertices[v, 1], vertices[p, 2] - vertices[v, 2]
+    bx, by, bz = vertices[q, 0] - vertices[v, 0], vertices[q, 1] - vertices[v, 1], vertices[q, 2] - vertices[v, 2]
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
+@parallel_kernel
+def vertex_area_vectors(vertices, faces, flip, align, offsets, corners, out):
+    """Write the sum of the doubled area vectors of the faces at each vertex, turned as `flip` says."""
+    for v in prange(offsets.shape[0] - 1):
+        total = (0.0, 0.0, 0.0)
+        for i in range(offsets[v], offsets[v + 1]):
+            f, k = corners[i] // 3, corners[i] % 3
+            p, q = faces[f, (k + 1) % 3], faces[f, (k + 2) % 3]
+            vector = area_vector(vertices, v, q, p) if flip[f] else area_vector(vertices, v, p, q)
+            total = add_aligned(total, vector, align)
+        out[v, 0], out[v, 1], out[v, 2] = total
+
+
+@parallel_kernel
+def ring_directions(vectors, align, offsets, neighbours, out):
+    """Write the direction of the sum of vectors (n, 3) over each vertex and its neighbours.
+
+    Where they cancel, as over a tetrahedron, it is the direction of the vertex's own vector, or 0.
+    """
+    for v in prange(offsets.shape[0] - 1):
+        own = (vectors[v, 0], vectors[v, 1], vectors[v, 2])
+        total = own
+        for i in range(offsets[v], offsets[v + 1]):
+            w = neighbours[i]
+            total = add_aligned(total, (vectors[w, 0], vectors[w, 1], vectors[w, 2]), align)
+        if norm(total) < CANCELLED * norm(own):
+            total = own
+        length = max(norm(total), TINY)
+        out[v, 0], out[v, 1], out[v, 2] = total[0] / length, total[1] / length, total[2] / length
+
+
+@kernel
+def norm(vector):
+    """Length of a vector."""
+    return math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
+
+
+@parallel_kernel
+def ring_sums(values, offsets, neighbours, out):
+    """Write the sum of values (n,) over each vertex and its neighbours."""
+    for v in prange(offsets.shape[0] - 1):
+        total = values[v]
+        for i in range(offsets[v], offsets[v + 1]):
+            total += values[neighbours[i]]
+        out[v] = total
+
+
+@parallel_kernel
+def mean_edge_lengths(vertices, offsets, neighbours, out):
+    """Write the mean distance from each vertex to its neighbours; 0 without any."""
+    for v in prange(offsets.shape[0] - 1):
+        total = 0.0
+        for i in range(offsets[v], offsets[v + 1]):
+            total += math.sqrt(squared_distance(vertices, v, neighbours[i]))
+        out[v] = total / max(offsets[v + 1] - offsets[v], 1)
+
+
+@kernel
+def squared_distance(vertices, i, j):
+    """Squared Euclidean distance of vertices i and j."""
+    x, y, z = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1], vertices[j, 2] - vertices[i, 2]
+    return x * x + y * y + z * z
+
+
+@kernel
+def two_rings(v, surface, members, marks):
+    """Write v, its neighbours and their neighbours to `members`; how many, and the largest squared distance."""
+    offsets, neighbours = surface.offsets, surface.neighbours
+    members[0] = v
+    marks[v] = v + 1
+    begin, n = 0, 1
+    for _ in range(2):
+        end = n
+        for m in range(begin, end):
+            for i in range(offsets[members[m]], offsets[members[m] + 1]):
+                w = neighbours[i]
+                members[n] = w
+                n += marks[w] != v + 1  # without a branch: half of these are new, in no order
+                marks[w] = v + 1
+        begin = end
+    reach = 0.0
+    for m in range(1, n):
+        reach = max(reach, squared_distance(surface.vertices, v, members[m]))
+    return n, reach
+
+
+@kernel
+def metric_ball(v, radius, normal, epoch, surface, members, marks):
+    """Write to `members` the vertices nearer to v than `radius`, reached over such vertices; how many.
+
+    The ball grows along edges only, and beyond the neighbours of v never past a fold: it enters no second sheet.
+    """
+    x, y, z = normal
+    vertices, normals, offsets, neighbours = surface
+    members[0] = v
+    marks[v] = epoch
+    done, n = 0, 1
+    while done < n:
+        for i in range(offsets[members[done]], offsets[members[done] + 1]):
+            w = neighbours[i]
+            if marks[w] != epoch:
+                marks[w] = epoch
+                if squared_distance(vertices, v, w) < radius * radius:
+                    cosine = x * normals[w, 0] + y * normals[w, 1] + z * normals[w, 2]
+                    if done == 0 or cosine > FOLD_COSINE:
+                        members[n] = w
+                        n += 1
+        done += 1
+    return n
+
+
+@kernel
+def local_coordinates(members, n, unit, normal, vertices, points):
+    """Write to points[i] the member i + 1 seen from member 0: two tangential coordinates and the height, over `unit`."""
+    nx, ny, nz = normal
+    ax, ay, az, bx, by, bz = monge.tangent_frame(nx, ny, nz)
+    v = members[0]
+    for i in range(n - 1):
+        w = members[i + 1]
+        x, y, z = vertices[w, 0] - vertices[v, 0], vertices[w, 1] - vertices[v, 1], vertices[w, 2] - vertices[v, 2]
+        x, y, z = x / unit, y / unit, z / unit
+        points[i, 0] = ax * x + ay * y + az * z
+        points[i, 1] = bx * x + by * y + bz * z
+        points[i, 2] = nx * x + ny * y + nz * z
