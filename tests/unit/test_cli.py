@@ -80,7 +80,9 @@ def test_info(folder, capsys):
     assert "euler characteristic" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("arguments", [["curvature"], ["nonsense"], ["curvature", "in.ply", "--method", "x"], ["info", "--y"]])
+@pytest.mark.parametrize(
+    "arguments", [["curvature"], ["nonsense"], ["curvature", "in.ply", "--method", "x"], ["info", "--y"]]
+)
 def test_wrong_usage_exits_with_2(folder, arguments):
     assert main(arguments) == 2
 

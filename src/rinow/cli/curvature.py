@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Literal
 
+import numpy as np
 from cyclopts import Parameter
 
 from rinow._version import __version__
@@ -62,10 +63,12 @@ def curvature(
     with working(f"curvature of {surface.n_vertices:,} vertices"):
         study = study_surface(surface, method=method, radius=radius, unit=unit)
     notes: list[str] = []
+    if not np.isfinite(study.fields(field)[field]).any():
+        notes.append(f"{field} is undefined at every vertex: method {method} gives none on this mesh.")
     with study.timed("writing"):
         for path in output:
             with working(f"writing {path.name}"):
-                notes += write_mesh(path, surface, study.vertex_data(field), units=study.units())
+                notes += write_mesh(path, surface, study.vertex_data(field), units=study.units(), quality=field)
         if picture:
             with working(f"drawing {picture.name}"):
                 write_picture(picture, study, field, title=mesh.name, up=up)
@@ -85,7 +88,7 @@ def write_picture(path: Path, study: SurfaceStudy, field: str, *, title: str, up
     figure = surface_figure(
         study.mesh.vertices,
         study.mesh.faces,
-        study.fields()[field],
+        study.fields(field)[field],
         label=label,
         up=up,
         title=f"{title}: {study.mesh.n_vertices:,} vertices, method {study.curvature.method}",

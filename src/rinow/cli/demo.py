@@ -20,7 +20,7 @@ def demo() -> None:
         surface = demo_mesh()
         study = study_surface(surface)
     with study.timed("writing"), working("drawing"):
-        write_mesh(MESH, surface, study.vertex_data(), units=study.units())
+        write_mesh(MESH, surface, study.vertex_data(), units=study.units(), quality="gaussian")
         write_picture(PICTURE, study, "gaussian", title="spot (Keenan Crane, CC0)", up="y")
     print_study("spot", study)
     print_notes((f"wrote {MESH} (fields at every vertex) and {PICTURE} (four views) into {Path.cwd()}.",))

@@ -74,15 +74,14 @@ class SurfaceStudy:
         """What the reader and the method had to do, one sentence each."""
         return (*self.mesh.notes, *self.curvature.notes)
 
-    def fields(self) -> dict[str, Floats]:
-        """The scalar fields that hold any value, in the order of `FIELDS`."""
+    def fields(self, chosen: str = "gaussian") -> dict[str, Floats]:
+        """The Gaussian curvature, the chosen field and those that hold any value, in the order of `FIELDS`."""
         values = {name: np.asarray(getattr(self.curvature, name)) for name in FIELDS}
-        return {name: v for name, v in values.items() if name == "gaussian" or np.isfinite(v).any()}
+        return {name: v for name, v in values.items() if name in ("gaussian", chosen) or np.isfinite(v).any()}
 
-    def vertex_data(self, first: str = "gaussian") -> dict[str, NDArray[Any]]:
-        """All fields for a file, the chosen scalar first, then directions where there are any, and the status."""
-        data: dict[str, NDArray[Any]] = self.fields()
-        data = {first: np.asarray(getattr(self.curvature, first)), **data}
+    def vertex_data(self, chosen: str = "gaussian") -> dict[str, NDArray[Any]]:
+        """All fields for a file: the scalars, directions where there are any, and the status."""
+        data: dict[str, NDArray[Any]] = dict(self.fields(chosen))
         for name in ("direction1", "direction2"):
             directions = getattr(self.curvature, name)
             if np.isfinite(directions).any():
