@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 
-def jittered_torus(n_vertices: int, *, jitter: float = 0.3, seed: int = 20) -> tuple[np.ndarray, np.ndarray]:
+def jittered_torus(n_vertices: int, *, jitter: float = 0.2, seed: int = 20) -> tuple[np.ndarray, np.ndarray]:
     """Torus with radii 1 and 0.4; grid points moved along the surface by up to `jitter` spacings.
 
     The vertices are exactly on the torus, so its curvature K = cos v / (0.4 (1 + 0.4 cos v)) is known.

@@ -254,10 +254,10 @@ class TriangleMesh(_Mesh):
         """(n_faces,): faces to turn so that neighbours agree and a closed surface has its normals outward."""
         flip = self.topology.face_flips
         if self.topology.is_closed and self.topology.is_orientable:
-            F = self.faces[self.topology.face_used]
-            V = self.vertices - self.vertices[F[0, 0]]
-            volumes = np.einsum("ij,ij->i", V[F[:, 0]], np.cross(V[F[:, 1]], V[F[:, 2]]))
-            if np.where(flip[self.topology.face_used], -volumes, volumes).sum() < 0:
+            used, volumes = self.topology.face_used, np.empty(self.n_faces)
+            origin = self.vertices[self.faces[np.argmax(used), 0]]
+            triangles.signed_volumes(self.vertices, self.faces, used, flip, origin, volumes)
+            if volumes.sum() < 0:
                 flip = ~flip
         return read_only(np.asarray(flip))
 

@@ -24,5 +24,8 @@ FLAT_SIMPLEX = 2e-15
 rounding error seen in 300,000 flat simplices of dimension 3 to 9."""
 
 LINEAR_TRIPLE = 1e-13
-"""A triple is linear when its excess over its longest side is below this: what rounding leaves of an equality, while
-an excess above it still decides about the curvature, by its square root."""
+"""A triple is linear when its excess is below this share of its shortest side, or of a hundredth of its longest one:
+what rounding leaves of an equality, while an excess above it still decides about the curvature, by its square root."""
+
+COMPARISON = 1e-12
+"""Distances are compared with those of a model surface as if they were off by this share: rounding of geodesics."""

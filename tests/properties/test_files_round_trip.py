@@ -13,7 +13,9 @@ from rinow.io.fields import VTK_NAMES
 
 FIELD_FORMATS = ["a.ply", "a.npz", "a.vtp", "a.vtk", "a.surf.gii", "a.gii.gz"]
 TYPES = ["f8", "f4", "i4", "u1"]
-NAMES = st.sampled_from(["gaussian", "mean", "k1", "quality", "status", "nx", "height", "direction1", "κ", "a-b", "file"])
+NAMES = st.sampled_from(
+    ["gaussian", "mean", "k1", "quality", "status", "nx", "height", "direction1", "κ", "a-b", "file"]
+)
 
 
 @pytest.fixture(scope="module")
@@ -93,11 +95,25 @@ def test_triangles_survive_in_stl(folder, mesh):
     np.testing.assert_allclose(back.vertices[back.faces].reshape(-1, 3), used, rtol=0, atol=18e-5 * diagonal)
 
 
-SOURCES = ["e.ply", "text.ply", "e.obj", "e.off", "e.stl", "text.stl", "e.npz", "e.surf.gii", "e.glb", "lh.pial", "e.vtk"]
+SOURCES = [
+    "e.ply",
+    "text.ply",
+    "e.obj",
+    "e.off",
+    "e.stl",
+    "text.stl",
+    "e.npz",
+    "e.surf.gii",
+    "e.glb",
+    "lh.pial",
+    "e.vtk",
+]
 TEXT = {
     "text.ply": b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty int z\n"
-    b"element face 2\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n1 nan 0\n0 1 0\n4 0 1 2 3\n3 0 1 2\n",
-    "text.stl": b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid\n",
+    b"element face 2\nproperty list uchar int vertex_index\nend_header\n"
+    b"0 0 0\n1 0 0\n1 nan 0\n0 1 0\n4 0 1 2 3\n3 0 1 2\n",
+    "text.stl": b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\n"
+    b"endsolid\n",
     "e.obj": b"v 0 0 0\nv 1 0 0\nvt 0 1\nv 0 1 0 # comment\nf 1/1 2/1 3/1\nf -1 -2 \\\n-3\n",
     "e.off": b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 0.5\n3 0 1 2\n",
 }

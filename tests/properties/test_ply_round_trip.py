@@ -4,13 +4,22 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from naive import ply as naive
 
 import rinow
+from naive import ply as naive
 
 RANGES = {"char": (-128, 127), "uchar": (0, 255), "short": (-(2**15), 2**15 - 1), "ushort": (0, 2**16 - 1),
           "int": (-(2**31), 2**31 - 1), "uint": (0, 2**32 - 1)}  # fmt: skip
-DTYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8"}
+DTYPES = {
+    "char": "i1",
+    "uchar": "u1",
+    "short": "i2",
+    "ushort": "u2",
+    "int": "i4",
+    "uint": "u4",
+    "float": "f4",
+    "double": "f8",
+}
 
 
 def numbers(kind):
@@ -22,7 +31,8 @@ def numbers(kind):
 def declarations(draw, prefix, max_size=3):
     """Properties of any type, numbers and lists."""
     kinds = st.one_of(
-        st.tuples(st.sampled_from(list(DTYPES))), st.tuples(st.sampled_from(list(RANGES)), st.sampled_from(list(DTYPES)))
+        st.tuples(st.sampled_from(list(DTYPES))),
+        st.tuples(st.sampled_from(list(RANGES)), st.sampled_from(list(DTYPES))),
     )
     return [(f"{prefix}{i}", *types) for i, types in enumerate(draw(st.lists(kinds, max_size=max_size)))]
 
@@ -58,7 +68,11 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("ply")
 
 
-@given(files(), st.sampled_from(["ascii", "binary_little_endian", "binary_big_endian"]), st.sampled_from(["\n", "\r\n", "\r"]))
+@given(
+    files(),
+    st.sampled_from(["ascii", "binary_little_endian", "binary_big_endian"]),
+    st.sampled_from(["\n", "\r\n", "\r"]),
+)
 def test_every_file_is_read_as_meant(folder, file, form, newline):
     elements, vertex, rows, polygons = file
     path = folder / "any.ply"

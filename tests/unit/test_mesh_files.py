@@ -7,9 +7,9 @@ import sys
 
 import numpy as np
 import pytest
-import shapes
 
 import rinow
+import shapes
 from rinow.errors import FileFormatError, InvalidInputError, InvalidMeshError, MissingDependencyError
 from rinow.io import ply
 from rinow.io.atomic import replacing
@@ -34,7 +34,9 @@ def test_an_unknown_suffix_names_the_known_ones(tmp_path):
             action(tmp_path / "a.xyz")
 
 
-@pytest.mark.parametrize("suffix", [".ply", ".obj", ".stl", ".off", ".glb", ".npz", ".vtp", ".vtk", ".gii", ".white", ".none"])
+@pytest.mark.parametrize(
+    "suffix", [".ply", ".obj", ".stl", ".off", ".glb", ".npz", ".vtp", ".vtk", ".gii", ".white", ".none"]
+)
 def test_missing_empty_and_folder(tmp_path, suffix):
     missing, empty, folder = (tmp_path / f"{name}{suffix}" for name in ("missing", "empty", "folder"))
     empty.touch()
@@ -171,7 +173,7 @@ def test_unwritable_outputs(tmp_path, suffix):
     (tmp_path / f"folder{suffix}").mkdir()
     with pytest.raises(FileFormatError, match="is a folder"):
         rinow.write_mesh(tmp_path / f"folder{suffix}", (V, F))
-    with pytest.raises(FileFormatError, match="cannot be written: the folder .* does not exist"):
+    with pytest.raises(FileFormatError, match=r"cannot be written: the folder .* does not exist"):
         rinow.write_mesh(tmp_path / "nowhere" / f"a{suffix}", (V, F))
 
 
@@ -196,7 +198,9 @@ def test_outputs_are_checked_before_the_work(tmp_path):
 
 # ------------------------------------------------------------------ faults that all formats share
 
-HEADER = "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+HEADER = (
+    "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+)
 LIST = "element face {}\nproperty list uchar int vertex_indices\nend_header\n"
 
 

@@ -4,9 +4,9 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from naive import ply as naive
 
 import rinow
+from naive import ply as naive
 from rinow.errors import FileFormatError, InvalidInputError, InvalidMeshError
 
 AXES = [("x", "float"), ("y", "float"), ("z", "float")]
@@ -19,7 +19,10 @@ def text(header, body="0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"):
     return f"ply\n{header}end_header\n{body}".encode()
 
 
-def plain(vertex="element vertex 3\nproperty float x\nproperty float y\nproperty float z\n",
+XYZ = "property float x\nproperty float y\nproperty float z\n"
+
+
+def plain(vertex="element vertex 3\n" + XYZ,
           face="element face 1\nproperty list uchar int vertex_index\n", form="format ascii 1.0\n"):  # fmt: skip
     return form + vertex + face
 
@@ -68,7 +71,12 @@ def test_faces_may_come_first_and_polygons_are_reported(read, form):
 
 @pytest.mark.parametrize("form", FORMATS)
 def test_three_columns_are_one_field(read, form):
-    extra = [(f"d_{axis}", "double") for axis in "xyz"] + [("n_x", "double"), ("n_y", "float"), ("n_z", "double"), ("nx", "float")]
+    extra = [(f"d_{axis}", "double") for axis in "xyz"] + [
+        ("n_x", "double"),
+        ("n_y", "float"),
+        ("n_z", "double"),
+        ("nx", "float"),
+    ]
     rows = [[*point, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0] for point in TRIANGLE]
     data = read(naive.encode(form, [("vertex", AXES + extra, rows), ("face", CORNERS, [[[0, 1, 2]]])])).vertex_data
     assert set(data) == {"d", "n_x", "n_y", "n_z", "nx"}
@@ -77,7 +85,9 @@ def test_three_columns_are_one_field(read, form):
 
 def test_bytes_after_the_end_are_reported(read):
     elements = [("vertex", AXES, TRIANGLE), ("face", CORNERS, [[[0, 1, 2]]])]
-    assert read(naive.encode("binary_big_endian", elements) + b"more").notes == ("4 bytes after the last element were left unread.",)
+    assert read(naive.encode("binary_big_endian", elements) + b"more").notes == (
+        "4 bytes after the last element were left unread.",
+    )
 
 
 FAULTS = {
@@ -88,12 +98,18 @@ FAULTS = {
     "line 3 of the PLY header, 'element vertex -1'": text(plain("element vertex -1\nproperty float x\n")),
     "line 4 of the PLY header, 'property real x'": text(plain("element vertex 3\nproperty real x\n")),
     "line 3 of the PLY header, 'property float x'": text(plain("property float x\n")),
-    "'property list float int vertex_index'": text(plain(face="element face 1\nproperty list float int vertex_index\n")),
+    "'property list float int vertex_index'": text(
+        plain(face="element face 1\nproperty list float int vertex_index\n")
+    ),
     "declares the element 'face' twice": text(plain() + "element face 1\nproperty int i\n"),
     "declares the property of vertex 'x' twice": text(plain("element vertex 3\nproperty float x\nproperty float x\n")),
     "declares no element 'vertex'": text(plain("")),
-    "no property 'z'": text(plain("element vertex 3\nproperty float x\nproperty float y\n"), "0 0\n1 0\n0 1\n3 0 1 2\n"),
-    "line 12 has 'zero' where a number belongs": text(plain(), "0 0 zero\n1 0 0\n0 1 0\n3 0 1 2\n").replace(b"\nend", b"\ncomment a\ncomment b\nend"),
+    "no property 'z'": text(
+        plain("element vertex 3\nproperty float x\nproperty float y\n"), "0 0\n1 0\n0 1\n3 0 1 2\n"
+    ),
+    "line 12 has 'zero' where a number belongs": text(
+        plain() + "comment a\ncomment b\n", "0 0 zero\n1 0 0\n0 1 0\n3 0 1 2\n"
+    ),
     "line 12 has '1,5' where a number belongs": text(plain(), "0 0 0\n1 0 0\n0 1,5 0\n3 0 1 2\n"),
     "face 0 names vertex 1.5, which is not an integer": text(plain(), "0 0 0\n1 0 0\n0 1 0\n3 0 1.5 2\n"),
     "face 0 names vertex -1, but": text(plain(), "0 0 0\n1 0 0\n0 1 0\n3 0 -1 2\n"),
@@ -113,7 +129,7 @@ def test_faults_have_a_place(read, fault):
 @pytest.mark.parametrize("form", FORMATS)
 @pytest.mark.parametrize("counts", [(10**12, 1), (3, 10**12), (10**17, 10**17)])
 def test_a_promise_beyond_the_file_takes_no_memory(read, form, counts):
-    header = plain(f"element vertex {counts[0]}\nproperty float x\nproperty float y\nproperty float z\n",
+    header = plain(f"element vertex {counts[0]}\n{XYZ}",
                    f"element face {counts[1]}\nproperty list uchar int vertex_index\n", f"format {form} 1.0\n")  # fmt: skip
     tracemalloc.start()
     try:
@@ -133,7 +149,9 @@ def test_truncation_inside_polygons_names_the_face(read, form):
 
 
 def test_a_length_beyond_the_file(read):
-    whole = naive.encode("binary_little_endian", [("vertex", AXES, TRIANGLE), ("face", [("vertex_index", "uint", "int")], [[[0, 1, 2]]])])
+    whole = naive.encode(
+        "binary_little_endian", [("vertex", AXES, TRIANGLE), ("face", [("vertex_index", "uint", "int")], [[[0, 1, 2]]])]
+    )
     with pytest.raises(FileFormatError, match="end inside face 0"):
         read(whole[:-16] + b"\xff\xff\xff\xff" + whole[-12:])
 
@@ -161,16 +179,27 @@ def test_the_header_is_what_meshlab_expects(tmp_path):
 
 
 def test_what_ply_cannot_carry_is_said(tmp_path):
-    fields = {"uv": np.zeros((3, 2)), "two words": np.zeros(3), "big": np.array([0, 1, 2**40]), "on": [True, False, True]}
+    fields = {
+        "uv": np.zeros((3, 2)),
+        "two words": np.zeros(3),
+        "big": np.array([0, 1, 2**40]),
+        "on": [True, False, True],
+    }
     notes = rinow.write_mesh(tmp_path / "a.ply", (TRIANGLE, [[0, 1, 2]]), fields)
-    assert [note.split(":")[0] for note in notes] == ["PLY has no arrays", "PLY has plain names only", "PLY has no 64-bit integers"]
+    assert [note.split(":")[0] for note in notes] == [
+        "PLY has no arrays",
+        "PLY has plain names only",
+        "PLY has no 64-bit integers",
+    ]
     back = rinow.read_mesh(tmp_path / "a.ply").vertex_data
     assert set(back) == {"uv_0", "uv_1", "two_words", "big", "on"}
     assert back["big"].tolist() == [0, 1, 2**40]
     assert back["on"].tolist() == [1, 0, 1]
 
 
-@pytest.mark.parametrize("fields", [{"x": [1, 2, 3]}, {"a b": [1, 2, 3], "a_b": [1, 2, 3]}, {"d": np.eye(3), "d_x": [1, 2, 3]}])
+@pytest.mark.parametrize(
+    "fields", [{"x": [1, 2, 3]}, {"a b": [1, 2, 3], "a_b": [1, 2, 3]}, {"d": np.eye(3), "d_x": [1, 2, 3]}]
+)
 def test_names_that_collide_are_refused(tmp_path, fields):
     with pytest.raises(InvalidInputError, match="two properties would be called"):
         rinow.write_mesh(tmp_path / "a.ply", (TRIANGLE, [[0, 1, 2]]), fields)

@@ -5,9 +5,9 @@ import struct
 
 import numpy as np
 import pytest
-import shapes
 
 import rinow
+import shapes
 from rinow.errors import FileFormatError
 from rinow.io.stl import read_stl
 
@@ -28,8 +28,8 @@ def read(tmp_path):
 
 @pytest.mark.parametrize(
     "face",
-    ["f 1 2 3", "f 1/1 2/1 3/2", "f 1//1 2//1 3//1", "f 1/1/1 2/2/1 3/1/1", "f -4 -3 -2", "\tf  1\t2 3 ", "f 1 \\\n 2 3",
-     "f 1/1/1 2/2/1 3/1/1\r", "f 1 2 3 # comment", "g a b\nusemtl m\ns off\nf 1 2 3"],
+    ["f 1 2 3", "f 1/1 2/1 3/2", "f 1//1 2//1 3//1", "f 1/1/1 2/2/1 3/1/1", "f -4 -3 -2", "\tf  1\t2 3 ",
+     "f 1 \\\n 2 3",      "f 1/1/1 2/2/1 3/1/1\r", "f 1 2 3 # comment", "g a b\nusemtl m\ns off\nf 1 2 3"],
 )  # fmt: skip
 def test_every_way_to_write_a_face(read, face):
     mesh = read("a.obj", f"mtllib missing.mtl\n# c\n{SQUARE}vt 0 0\nvt 1 1\nvn 0 0 1\n{face}\n")
@@ -38,8 +38,12 @@ def test_every_way_to_write_a_face(read, face):
 
 
 def test_seams_groups_and_unused_vertices_change_nothing(read):
-    """Of these 5 vertices trimesh makes 6 (a texture seam splits one edge), and it drops the unused one."""
-    text = "v 9 9 9\n" + SQUARE + "vt 0 0\nvt 1 0\nvt 1 1\no one\nusemtl a\nf 2/1 3/2 4/3\no two\nusemtl b\nf 2/3 4/1 5/2\n"
+    """trimesh makes two meshes of this file, with 5 and 4 vertices."""
+    text = (
+        "v 9 9 9\n"
+        + SQUARE
+        + "vt 0 0\nvt 1 0\nvt 1 1\no one\nusemtl a\nf 2/1 3/2 4/3\no two\nusemtl b\nf 2/3 4/1 5/2\n"
+    )
     mesh = read("a.obj", text)
     assert mesh.vertices[:, 0].tolist() == [9, 0, 1, 1, 0]
     assert mesh.faces.tolist() == [[1, 2, 3], [1, 3, 4]]
@@ -84,7 +88,9 @@ def test_obj_faults_have_a_line(read, content, fault):
 # ------------------------------------------------------------------ OFF
 
 
-@pytest.mark.parametrize("head", ["OFF\n4 2 0\n", "OFF 4 2 5\n", "# c\n\nOFF\n# c\n4 2\n", "NOFF\r\n4 2 0\r\n", "STCNOFF\n4 2 0\n"])
+@pytest.mark.parametrize(
+    "head", ["OFF\n4 2 0\n", "OFF 4 2 5\n", "# c\n\nOFF\n# c\n4 2\n", "NOFF\r\n4 2 0\r\n", "STCNOFF\n4 2 0\n"]
+)
 def test_every_head_of_an_off_file(read, head):
     body = "0 0 0\n\n1 0 0 # c\n1 1 0\n  0 1 0\n4 0 1 2 3 0.1 0.2 0.3\n3 0 1 2 7\n"
     mesh = read("a.off", head + body)

@@ -53,6 +53,7 @@ def lifted(mesh: TriangleMesh) -> Estimate:
     is_closed = t.vertex_is_manifold & ~t.vertex_is_boundary
     gaussian = _metric_curvature(mesh, frames.normals, is_closed, frames.k1 * frames.k2)
     mean = 0.5 * (frames.k1 + frames.k2)
+    gaussian[np.isnan(mean)] = np.nan
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     return Estimate(
         gaussian, ring_deviations(mesh, gaussian), longest_edges(mesh),

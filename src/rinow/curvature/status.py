@@ -7,6 +7,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.kernels import stars
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = ["VertexStatus", "vertex_status"]
@@ -57,19 +58,18 @@ def vertex_status(mesh: TriangleMesh | IntrinsicMesh) -> NDArray[np.uint8]:
     status = np.zeros(mesh.n_vertices, np.uint8)
     status[topology.vertex_is_boundary] = VertexStatus.BOUNDARY
     status[~topology.vertex_is_manifold] = VertexStatus.NONMANIFOLD
-    degenerate = mesh.face_is_degenerate
-    if degenerate.any():
-        status[~_touched(mesh, ~degenerate)] = VertexStatus.DEGENERATE
-        status[~_touched(mesh, np.isfinite(mesh.face_areas))] = VertexStatus.ISOLATED
-    else:
-        status[~topology.vertex_is_used] = VertexStatus.ISOLATED
+    proper = np.empty(mesh.n_vertices, np.bool_)
+    stars.proper_stars(mesh.edge_lengths, mesh.face_areas, topology.corner_offsets, topology.vertex_corners, proper)
+    status[~proper] = VertexStatus.DEGENERATE
+    status[~(topology.vertex_is_used | _in_face_with_repeated_vertex(mesh))] = VertexStatus.ISOLATED
     if isinstance(mesh, TriangleMesh):
         status[~mesh.vertex_is_finite] = VertexStatus.NONFINITE
     return status
 
 
-def _touched(mesh: TriangleMesh | IntrinsicMesh, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which vertices have a chosen face."""
+def _in_face_with_repeated_vertex(mesh: TriangleMesh | IntrinsicMesh) -> NDArray[np.bool_]:
+    """(n_vertices,): some face has the vertex, but takes no part since one of its vertices is there twice."""
     touched = np.zeros(mesh.n_vertices, np.bool_)
-    touched[mesh.faces[chosen].ravel()] = True
+    left_out = np.flatnonzero(~mesh.topology.face_used)
+    touched[mesh.faces[left_out[np.isfinite(mesh.face_areas[left_out])]].ravel()] = True
     return touched

@@ -27,6 +27,12 @@ Floats = NDArray[np.float64]
 INTRINSIC = {"angle_defect": angle_defect, "wald": wald}
 METHODS = ("auto", "sectional", "lifted", "wald", "angle_defect")
 QUALITIES = ("best", "fast")
+UNDEFINED = np.isin(np.arange(len(VertexStatus)), (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE))
+"""Whether a status leaves no value at all."""
+SHAPES = {name: () for name in ("gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "radius", "spread")} | {
+    name: (3,) for name in ("direction1", "direction2")
+}
+"""Shape of one row of each field."""
 POWERS = {"gaussian": 2, "spread": 2, "mean": 1, "k1": 1, "k2": 1, "curvedness": 1, "radius": -1}
 """Power of 1/length of each field that has a unit."""
 SAFE_SCALE = 2.0**100
@@ -227,19 +233,19 @@ def _assembled(estimate: Estimate, status: NDArray[np.uint8], method: str) -> Su
     """The result in the unit and order of the mesh computed with."""
     finite = np.isfinite(estimate.gaussian)
     status[(status == VertexStatus.OK) & ~finite] = VertexStatus.UNRESOLVED
-    undefined = ~finite | np.isin(status, (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE))
-    n = len(status)
+    undefined = ~finite | UNDEFINED[status]
     values: dict[str, Floats] = {}
-    for field in fields(estimate):
-        value = getattr(estimate, field.name)
+    for name, shape in SHAPES.items():
+        value = getattr(estimate, name, None)
         if value is None:
-            value = np.broadcast_to(np.nan, (n, 3) if field.name.startswith("direction") else (n,))
-        else:
+            value = np.broadcast_to(np.nan, (len(status), *shape))
+        elif undefined.any():
             value[undefined] = np.nan
-        values[field.name] = value
-    k1, k2 = values["k1"], values["k2"]
-    values["shape_index"] = 2.0 / np.pi * np.arctan2(k1 + k2, k1 - k2)
-    values["curvedness"] = np.sqrt(0.5 * (k1 * k1 + k2 * k2))
+        values[name] = value
+    if estimate.k1 is not None and estimate.k2 is not None:
+        k1, k2 = estimate.k1, estimate.k2
+        values["shape_index"] = 2.0 / np.pi * np.arctan2(k1 + k2, k1 - k2)
+        values["curvedness"] = np.sqrt(0.5 * (k1 * k1 + k2 * k2))
     return SurfaceCurvature(**values, status=status, method=method)
 
 

@@ -60,9 +60,9 @@ def writing(path: Path, format_name: str) -> Generator[None]:
 
 
 @contextmanager
-def quiet(logger: str = "") -> Generator[None]:
-    """Silence the warnings of a library, and its log where it has one."""
-    log = logging.getLogger(logger) if logger else logging.Logger("none")
+def quiet(logger: str = "rinow") -> Generator[None]:
+    """Silence the warnings of a library, and its log where it keeps one."""
+    log = logging.getLogger(logger)
     before = log.disabled
     log.disabled = True
     try:

@@ -19,10 +19,11 @@ _TRIANGLES, _QUADS = b"\xff\xff\xfe", (b"\xff\xff\xff", b"\xff\xff\xfd")
 
 def is_freesurfer(path: Path) -> bool:
     """Whether a file starts like a FreeSurfer surface of triangles; their names (lh.white) have no fixed suffix."""
-    if not path.is_file():
+    try:
+        with path.open("rb") as file:
+            return file.read(3) == _TRIANGLES
+    except OSError:
         return False
-    with path.open("rb") as file:
-        return file.read(3) == _TRIANGLES
 
 
 def read_freesurfer(path: Path) -> TriangleMesh:

@@ -247,11 +247,11 @@ def _format_of(path: Path, *, sniff: bool = False) -> _Format:
     for suffix, form in _FORMATS.items():
         if name.endswith(suffix):
             return form
-    if sniff and is_freesurfer(path):
+    if sniff and os.path.isfile(path) and is_freesurfer(path):
         return _FREESURFER
-    if sniff and not path.exists():
+    if sniff and not os.path.exists(path):
         raise FileFormatError(f"{path}: there is no such file; check the name and the folder.")
-    if path.is_dir():
+    if os.path.isdir(path):
         raise FileFormatError(f"{path} is a folder; give the name of a mesh file.")
     raise FileFormatError(
         f"{path} has no suffix of a known mesh format ({' '.join(_FORMATS)}); convert the mesh to PLY."

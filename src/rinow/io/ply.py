@@ -127,6 +127,7 @@ def _joined(fields: dict[str, NDArray[Any]]) -> Fields:
         parts = [fields.get(f"{stem}_{axis}") for axis in _AXES]
         if (
             name[-2:] not in ("_x", "_y", "_z")
+            or not stem
             or any(p is None or p.dtype != values.dtype for p in parts)
             or stem in fields
         ):

@@ -43,7 +43,7 @@ def read_vtp(path: Path) -> TriangleMesh:
         If pyvista is not installed.
     """
     pyvista = _pyvista()
-    with quiet("root"), _vtk_faults() as faults:
+    with quiet(), _vtk_faults() as faults:
         data = pyvista.read(str(path))
         if found := faults():
             raise FileFormatError(f"VTK says {found[0]!r}; the file is damaged, export it again.")

@@ -5,6 +5,7 @@ They are not read by VTK: its reader ends the process with a segmentation fault 
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any, BinaryIO
 from urllib.parse import unquote
@@ -112,12 +113,9 @@ def _numbers(file: BinaryIO, kind: str, count: int, *, text: bool) -> Array:
         raise FileFormatError(f"{count} numbers of type {kind} are unknown; save the file as .vtp.")
     dtype = np.dtype(_TYPES[kind.lower()])
     if not text:
-        data = file.read(count * dtype.itemsize)
-        if len(data) < count * dtype.itemsize:
-            raise FileFormatError("the data end inside an array; the file is truncated, copy it again.")
-        return np.frombuffer(data, dtype.newbyteorder(">"))
-    lines: list[bytes] = []
-    missing = count
+        return np.frombuffer(_take(file, count * dtype.itemsize), dtype.newbyteorder(">"))
+    _check_left(file, count)
+    lines, missing = list[bytes](), count
     while missing > 0 and (line := file.readline()):
         lines.append(line)
         missing -= len(line.split())
@@ -168,8 +166,9 @@ def _field(file: BinaryIO, *, text: bool) -> tuple[str, Array | None]:
         raise FileFormatError(f"the line {' '.join(words)!r} is no head of an array; the file is damaged.")
     name, width, n_rows, kind = unquote(words[0]), int(words[1]), int(words[2]), words[3]
     if kind == "string":
+        _check_left(file, width * n_rows)
         for _ in range(width * n_rows):
-            file.readline() if text else file.read(_string_length(file))
+            file.readline() if text else _take(file, _string_length(file))
         return name, None
     if kind == "bit" and not text:
         bits = np.unpackbits(_numbers(file, "unsigned_char", (width * n_rows + 7) // 8, text=text))
@@ -186,6 +185,17 @@ def _shaped(values: Array, n_rows: int, kind: str, *, text: bool) -> Array:
 
 def _string_length(file: BinaryIO) -> int:
     """Length of the next text: the two top bits of its first byte tell how many bytes hold the length."""
-    first = file.read(1)[0]
-    more = {3: 0, 2: 1, 1: 3, 0: 7}[first >> 6]
-    return int.from_bytes(bytes([first & 63]) + file.read(more), "big")
+    first = _take(file, 1)[0]
+    return int.from_bytes(bytes([first & 63]) + _take(file, (7, 3, 1, 0)[first >> 6]), "big")
+
+
+def _take(file: BinaryIO, size: int) -> bytes:
+    """The next bytes."""
+    _check_left(file, size)
+    return file.read(size)
+
+
+def _check_left(file: BinaryIO, size: int) -> None:
+    """Refuse to read more bytes than are left."""
+    if size > os.fstat(file.fileno()).st_size - file.tell():
+        raise FileFormatError(f"the file ends before {size} promised bytes; it is truncated, copy it again.")

@@ -11,7 +11,7 @@ import numpy as np
 
 from rinow.kernels import monge, stencils
 from rinow.kernels._jit import kernel, parallel_kernel, prange
-from rinow.kernels.stencils import SOFTENING
+from rinow.kernels.stencils import QUADRIC_POINTS, SOFTENING
 
 MAX_ORDER = 4
 WIDTH = 2 * MAX_ORDER + 1
@@ -131,8 +131,11 @@ def fit_jet(points, n, order, work):
 
     Below order 2 the given tangent plane is kept: Euler's formula, the monomials 2..4 alone.
     """
-    while order > 1 and n < SPARE * TERMS[order]:
+    while order > 2 and n < SPARE * TERMS[order]:
         order -= 1
+    if n < QUADRIC_POINTS:
+        order = 1
+        stencils.stretch_to_chords(points, n)
     total = add_moments(points, n, work.powers, work.moments, work.heights)
     rank = factorise(work.moments, 0, TERMS[order], work.factor)
     while order > 1 and rank < TERMS[order]:

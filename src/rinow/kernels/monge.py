@@ -60,8 +60,9 @@ def write_principal_frame(row, coefficients, unit, normal, frames):
     mean, half = 0.5 * (s11 + s22), 0.5 * (s11 - s22)
     radius = math.hypot(half, s12)
     frames.k1[row], frames.k2[row] = (mean + radius) / unit, (mean - radius) / unit
-    angle = 0.5 * math.atan2(s12, half)
-    cos, sin = math.cos(angle), math.sin(angle)
+    cos, sin = (radius + half, s12) if half >= 0.0 else (s12, radius - half)
+    length = math.hypot(cos, sin)
+    cos, sin = (cos / length, sin / length) if length > 0.0 else (1.0, 0.0)
     ux, uy, uz, vx, vy, vz, nx, ny, nz = graph_frame(f1, f2, normal)
     d1, d2, n = frames.direction1, frames.direction2, frames.normals
     d1[row, 0], d1[row, 1], d1[row, 2] = cos * ux + sin * vx, cos * uy + sin * vy, cos * uz + sin * vz

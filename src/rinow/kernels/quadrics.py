@@ -10,7 +10,7 @@ import numpy as np
 
 from rinow.kernels import monge, stencils
 from rinow.kernels._jit import kernel, parallel_kernel, prange
-from rinow.kernels.stencils import SOFTENING
+from rinow.kernels.stencils import QUADRIC_POINTS, SOFTENING
 
 PIVOT = 1e-6
 """A term depends on the earlier ones when this share of its norm is left."""
@@ -51,11 +51,13 @@ def solve_three(a, b, c, d, e, f, x, y, z):
 def fit_quadric(points, n, coefficients):
     """Write c of z = c0 x + c1 y + c2 x^2 + c3 x y + c4 y^2; whether the points determine it.
 
-    The slopes are eliminated first.  Fewer than six points leave them 0: Euler's formula in the given tangent plane.
+    The slopes are eliminated first.  Too few points leave them 0: Euler's formula in the given tangent plane.
     """
+    if n < QUADRIC_POINTS:
+        stencils.stretch_to_chords(points, n)
     (xx, xy, yy), t, q, (zx, zy), g = quadric_moments(points, n)
     det = xx * yy - xy * xy
-    tilted = n > 5 and det > PIVOT * xx * yy
+    tilted = n >= QUADRIC_POINTS and det > PIVOT * xx * yy
     ia, ib, ic = (yy / det, -xy / det, xx / det) if tilted else (0.0, 0.0, 0.0)
     a0, a1, a2 = ia * t[0] + ib * t[1], ia * t[1] + ib * t[2], ia * t[2] + ib * t[3]
     b0, b1, b2 = ib * t[0] + ic * t[1], ib * t[1] + ic * t[2], ib * t[2] + ic * t[3]

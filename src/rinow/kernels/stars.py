@@ -6,6 +6,7 @@ import numpy as np
 
 from rinow.kernels._jit import kernel, parallel_kernel, prange
 from rinow.kernels.spaceform import angle_and_derivative
+from rinow.tolerances import DEGENERATE_AREA
 
 FULL_TURN = 2.0 * math.pi
 END_TOLERANCE = 1e-7
@@ -90,6 +91,17 @@ def vertex_star_curvatures(edge_lengths, offsets, corners, is_closed, n_blocks, 
                     for j in range(3):
                         sides[i - offsets[v], j] = edge_lengths[f, (k + j) % 3]
                 out[v] = star_curvature(sides[: offsets[v + 1] - offsets[v]])
+
+
+@parallel_kernel
+def proper_stars(edge_lengths, areas, offsets, corners, out):
+    """Write whether some face at each vertex is not degenerate."""
+    for v in prange(offsets.shape[0] - 1):
+        out[v] = False
+        for i in range(offsets[v], offsets[v + 1]):
+            f = corners[i] // 3
+            longest = max(edge_lengths[f, 0], edge_lengths[f, 1], edge_lengths[f, 2])
+            out[v] |= areas[f] > DEGENERATE_AREA * longest * longest
 
 
 @parallel_kernel

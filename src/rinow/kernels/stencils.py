@@ -13,6 +13,8 @@ SOFTENING = 0.01
 FOLD_COSINE = 0.2
 """Metric balls stop where the normal turns by more than the angle with this cosine: a graph over the tangent
 plane has no overhang, and a sheet folded back is another part of the surface."""
+QUADRIC_POINTS = 7
+"""Fewer points than this leave the tangent plane as it is: their circles are fitted by Euler's formula alone."""
 CANCELLED = 0.1
 """A sum of vectors shorter than this share of the first one has no direction of its own."""
 TINY = 1e-300
@@ -168,3 +170,16 @@ def local_coordinates(members, n, unit, normal, vertices, points):
         points[i, 0] = ax * x + ay * y + az * z
         points[i, 1] = bx * x + by * y + bz * z
         points[i, 2] = nx * x + ny * y + nz * z
+
+
+@kernel
+def stretch_to_chords(points, n):
+    """Move the points outwards over the plane until the tangential distance is the distance d.
+
+    The quadratic terms of a jet then are Euler's formula for the curvatures 2 z / d^2, exact on a sphere.
+    """
+    for i in range(n):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        rho2 = x * x + y * y
+        stretch = math.sqrt((rho2 + z * z) / rho2) if rho2 > 0.0 else 0.0
+        points[i, 0], points[i, 1] = x * stretch, y * stretch

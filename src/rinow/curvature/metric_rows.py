@@ -1,0 +1,107 @@
+"""The distances of spaces of every kind, one row at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import issparse
+
+from rinow import tolerances
+from rinow._arrays import as_floats, as_points
+from rinow.errors import InvalidInputError
+from rinow.geodesics.exact import geodesic_distances
+from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh
+from rinow.metric_space import MetricSpace
+
+__all__ = ["MetricRows", "metric_rows"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+class MetricRows(NamedTuple):
+    """A space as a function from a point to its distances."""
+
+    n_points: int
+    row: Callable[[int, float], Floats]
+    """Distances from a point to all points; those beyond the limit given may be inf."""
+    rtol: Callable[[Indices], float]
+    """Share by which the distances between some points may be off."""
+
+
+def metric_rows(space: Any) -> MetricRows:
+    """The distances of a space of any kind.
+
+    Parameters
+    ----------
+    space : MetricSpace, mesh, (n, n) or (n, d) array_like, or graph
+        Distances; a surface with exact geodesic distances of its vertices; points with straight distances; or edge
+        lengths (scipy sparse or networkx) with shortest paths.  A square array holds distances.
+
+    Raises
+    ------
+    InvalidInputError
+        If `space` is none of these.
+    """
+    if isinstance(space, tuple | TriangleMesh | IntrinsicMesh) or hasattr(space, "faces"):
+        return _surface(as_mesh(space))
+    if issparse(space) or hasattr(space, "nodes"):
+        return _matrix(MetricSpace.from_graph(space))
+    if isinstance(space, MetricSpace):
+        return _matrix(space)
+    values = as_floats(space, "space")
+    if values.ndim == 2 and values.shape[0] == values.shape[1]:
+        return _matrix(MetricSpace(values))
+    return _cloud(as_points(values, "space"))
+
+
+def _matrix(space: MetricSpace) -> MetricRows:
+    """The rows of a matrix."""
+    D = space.distances
+    return MetricRows(len(D), lambda i, limit: D[i], _rounding)
+
+
+def _cloud(points: Floats) -> MetricRows:
+    """Points with straight distances."""
+    if not len(points) or not np.isfinite(points).all():
+        raise InvalidInputError(f"space has {len(points)} points, not all finite; give at least one, all finite.")
+    return MetricRows(len(points), lambda i, limit: np.linalg.norm(points - points[i], axis=1), _rounding)
+
+
+def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:
+    """Vertices with exact geodesic distances."""
+
+    def row(i: int, limit: float) -> Floats:
+        if np.isinf(limit):
+            return np.asarray(geodesic_distances(mesh, [i])).ravel()
+        near = geodesic_distances(mesh, [i], max_distance=limit)
+        distances = np.full(mesh.n_vertices, np.inf)
+        distances[near.indices] = near.data
+        distances[i] = 0.0
+        return distances
+
+    return MetricRows(mesh.n_vertices, row, lambda members: max(_chord_error(mesh, members), _rounding(members)))
+
+
+def _rounding(members: Indices) -> float:
+    return tolerances.COMPARISON
+
+
+def _chord_error(mesh: TriangleMesh | IntrinsicMesh, members: Indices) -> float:
+    """Half the largest share by which an edge between the points is shorter than the arc it stands for.
+
+    An arc of curvature κ is longer than its chord c by the share (κc)²/24 (Haantjes), and κc is the angle between the
+    normals at its ends.  Without positions, c² K is taken as in a regular star: 2/√3 times the angle defect.
+    """
+    inside = np.zeros(mesh.n_vertices, np.bool_)
+    inside[members] = True
+    if isinstance(mesh, IntrinsicMesh):
+        turns = 2 / 3**0.5 * np.abs(mesh.vertex_angle_defects[inside & ~mesh.topology.vertex_is_boundary])
+    else:
+        edges = mesh.topology.edges
+        ends = mesh.vertex_normals[edges[inside[edges].all(axis=1)]]
+        turns = ((ends[:, 0] - ends[:, 1]) ** 2).sum(axis=1)
+    return float(turns.max(initial=0.0)) / 48
