@@ -87,15 +87,14 @@ class _Mesh:
         t = self.topology
         angles = np.empty(self.n_vertices)
         triangles.vertex_sums_of_corners(self.corner_angles, t.corner_offsets, t.vertex_corners, angles)
-        n_corners = np.diff(t.corner_offsets)
+        defects = 2.0 * np.pi - angles
         # Edges minus faces at a vertex; only boundary and non-manifold edges make it differ from 0.
-        irregular = t.edges[t.edge_is_boundary | ~t.edge_is_manifold]
-        surplus = np.zeros(self.n_vertices)
+        irregular = np.flatnonzero(t.vertex_is_boundary | t.vertex_is_on_nonmanifold_edge)
         if len(irregular):
-            touched = np.unique(irregular)
-            n_edges = np.bincount(t.edges.ravel(), minlength=self.n_vertices)
-            surplus[touched] = (n_edges - n_corners)[touched]
-        return read_only(np.where(n_corners > 0, np.pi * (2.0 - surplus) - angles, 0.0))
+            surplus = np.diff(t.neighbour_offsets) - np.diff(t.corner_offsets)
+            defects[irregular] -= np.pi * surplus[irregular]
+        defects[~t.vertex_is_used] = 0.0
+        return read_only(defects)
 
     @property
     def euler_characteristic(self) -> int:
@@ -284,8 +283,8 @@ class TriangleMesh(_Mesh):
     @property
     def is_soup(self) -> bool:
         """Whether no two faces share an edge although several could: every face is separate."""
-        used = int(self.topology.face_used.sum())
-        return used > 1 and self.topology.n_edges == 3 * used
+        t = self.topology
+        return bool(t.partners.max() < 0 and t.face_used.sum() > 1 and t.edge_is_manifold.all())
 
     def welded(self, *, rtol: float = tolerances.WELD_DISTANCE) -> tuple[TriangleMesh, Indices]:
         """Merge vertices closer than ``rtol`` times the diagonal of the bounding box.

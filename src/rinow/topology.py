@@ -115,6 +115,11 @@ class Topology:
         """(n_vertices,): a boundary edge ends at the vertex."""
         return self._vertex_kinds[1]
 
+    @property
+    def vertex_is_on_nonmanifold_edge(self) -> Bools:
+        """(n_vertices,): an edge with three or more faces ends at the vertex."""
+        return self._vertex_kinds[2]
+
     @cached_property
     def vertex_is_used(self) -> Bools:
         """(n_vertices,): some face that takes part has the vertex."""
