@@ -114,6 +114,8 @@ def test_formats_without_fields_say_what_they_left_out(tmp_path, name):
 def test_fields_that_do_not_fit_are_refused(tmp_path, values):
     with pytest.raises(InvalidInputError, match=r"vertex_data\['k'\] has type .* 4 rows"):
         rinow.write_mesh(tmp_path / "a.ply", (V, F), {"k": values})
+    with pytest.raises(InvalidInputError, match="give a name"):
+        rinow.write_mesh(tmp_path / "a.ply", (V, F), {"": K})
     assert not list(tmp_path.iterdir())
 
 

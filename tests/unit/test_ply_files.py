@@ -8,6 +8,7 @@ import pytest
 import rinow
 from naive import ply as naive
 from rinow.errors import FileFormatError, InvalidInputError, InvalidMeshError
+from rinow.io import text_numbers
 
 AXES = [("x", "float"), ("y", "float"), ("z", "float")]
 TRIANGLE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
@@ -19,6 +20,7 @@ def text(header, body="0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"):
     return f"ply\n{header}end_header\n{body}".encode()
 
 
+LIST = "property list uchar int vertex_index\n"
 XYZ = "property float x\nproperty float y\nproperty float z\n"
 
 
@@ -37,7 +39,7 @@ def read(tmp_path):
 
 
 def test_comments_blank_lines_and_words_in_the_header(read):
-    header = "comment end_header is not here\nobj_info any\n\n" + plain() + "comment  é\n"
+    header = "comment not yet: end_header\nobj_info any\n\n" + plain() + "comment  é\n"
     assert read(text(header)).n_faces == 1
 
 
@@ -48,9 +50,24 @@ def test_a_body_that_starts_like_a_line_end(read):
         np.testing.assert_array_equal(read(naive.encode("binary_little_endian", elements, newline)).vertices, vertices)
 
 
+def test_a_signalling_nan_is_a_nan(read):
+    whole = naive.encode("binary_big_endian", [("vertex", AXES, TRIANGLE), ("face", CORNERS, [[[0, 1, 2]]])])
+    start = whole.index(b"end_header\n") + 11
+    vertices = read(whole[:start] + b"\x7f\xa0\x00\x00" + whole[start + 4 :]).vertices
+    np.testing.assert_array_equal(vertices[0], [np.nan, 0, 0])
+
+
 def test_text_keeps_all_digits_of_positions(read):
     body = "0.1 0.2 0.30000000000000004\n1 0 0\n0 1 0\n3 0 1 2\n"
     assert read(text(plain(), body)).vertices[0].tolist() == [0.1, 0.2, 0.30000000000000004]
+
+
+def test_text_is_read_in_blocks(read, monkeypatch):
+    monkeypatch.setattr(text_numbers, "_BLOCK", 5)
+    body = "12345678 0 0\n\n      \n       \n1 0 0 0 1\n0\n3 0 1 2\n"
+    assert read(text(plain(), body)).vertices.tolist() == [[12345678, 0, 0], [1, 0, 0], [0, 1, 0]]
+    with pytest.raises(FileFormatError, match="line 16 has 'x'"):  # 9 lines of header
+        read(text(plain(), body.replace("2\n", "x\n")))
 
 
 def test_numbers_too_large_for_their_type_stay_as_they_are(read):
@@ -116,6 +133,9 @@ FAULTS = {
     "end inside face 0 of the 1": text(plain(), "0 0 0\n1 0 0\n0 1 0\n3 0 1\n"),
     "end inside face 0 of the 1 ": text(plain(), "0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n"),
     "end inside face 0 of the 1  ": text(plain(), "0 0 0\n1 0 0\n0 1 0\n2.5 0 1 2\n"),
+    "end inside face 1 of the 2": text(
+        plain(face="element face 2\n" + LIST), "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n2.5 0 1 2\n"
+    ),
     "4 numbers are left after the last element": text(plain(), "0 0 0 7\n1 0 0\n0 1 0\n3 0 1 2\n"),
 }  # fmt: skip
 
@@ -129,8 +149,7 @@ def test_faults_have_a_place(read, fault):
 @pytest.mark.parametrize("form", FORMATS)
 @pytest.mark.parametrize("counts", [(10**12, 1), (3, 10**12), (10**17, 10**17)])
 def test_a_promise_beyond_the_file_takes_no_memory(read, form, counts):
-    header = plain(f"element vertex {counts[0]}\n{XYZ}",
-                   f"element face {counts[1]}\nproperty list uchar int vertex_index\n", f"format {form} 1.0\n")  # fmt: skip
+    header = plain(f"element vertex {counts[0]}\n{XYZ}", f"element face {counts[1]}\n{LIST}", f"format {form} 1.0\n")
     tracemalloc.start()
     try:
         with pytest.raises(FileFormatError, match=r"the header promises at least \d+ bytes, but \d+ follow"):

@@ -162,6 +162,13 @@ def test_binary_stl(read, header):
     assert mesh.topology.is_closed
 
 
+def test_bytes_after_a_binary_stl(read):
+    triangle = [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]
+    assert read("a.stl", binary_stl(triangle) + b"more").n_faces == 1
+    with pytest.raises(FileFormatError, match="the text has 0 vertex lines"):
+        read("a.stl", binary_stl(triangle, b"solid") + b"more")
+
+
 def test_corners_that_are_not_finite_stay_apart(read):
     mesh = read("a.stl", binary_stl([[[0, 0, 0], [1, 0, 0], [np.nan, 1, 0]], [[0, 0, 0], [1, 0, 0], [np.nan, 1, 0]]]))
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 1, 3]]

@@ -12,12 +12,14 @@ import numpy as np
 
 from rinow.errors import FileFormatError, MissingDependencyError
 from rinow.io.atomic import replacing
-from rinow.io.faults import quiet
 from rinow.io.fields import Fields, Units, units_text
 from rinow.io.polygons import Runs, runs_of_offsets, surface_triangles
 from rinow.mesh import TriangleMesh
 
 __all__ = ["read_vtp", "write_vtk"]
+
+_HARMLESS = re.compile("ERROR: In|Warning: In|.*minor version|.*InformationKey")
+"""Heads of messages, newer files, and ranges of arrays that are nan."""
 
 
 def read_vtp(path: Path) -> TriangleMesh:
@@ -43,12 +45,15 @@ def read_vtp(path: Path) -> TriangleMesh:
         If pyvista is not installed.
     """
     pyvista = _pyvista()
-    with quiet(), _vtk_faults() as faults:
-        data = pyvista.read(str(path))
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader  # pyvista.read would log faults and configure logging
+
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(str(path))
+    with _vtk_faults() as faults:
+        reader.Update()
         if found := faults():
-            raise FileFormatError(f"VTK says {found[0]!r}; the file is damaged, export it again.")
-    if not isinstance(data, pyvista.PolyData):
-        raise FileFormatError(f"the file holds a {type(data).__name__}; extract its surface and save that as PolyData.")
+            raise FileFormatError(f"VTK says {found[0]!r}; the file is damaged or no PolyData, export it again.")
+    data = pyvista.wrap(reader.GetOutput())
     points = np.asarray(data.points)
     faces, notes = surface_triangles(len(points), _cells(data.GetPolys()), _cells(data.GetStrips()))
     fields = {name: np.array(values) for name, values in data.point_data.items() if values.dtype.kind in "biuf"}
@@ -107,7 +112,7 @@ def _vtk_faults() -> Generator[Callable[[], list[str]]]:
 
     def faults() -> list[str]:
         lines = [re.sub(r"\(0x\w+\)", "", line).strip() for line in window.GetOutput().splitlines()]
-        return [line for line in lines if line and not re.match("ERROR:|Warning:|.*minor version", line)]
+        return [line for line in lines if line and not _HARMLESS.match(line)]
 
     try:
         yield faults
