@@ -53,10 +53,16 @@ class Topology:
         return self._corner_rows[1]
 
     @cached_property
+    def _corner_neighbours(self) -> tuple[Indices, Indices]:
+        after, before = np.empty_like(self.vertex_corners), np.empty_like(self.vertex_corners)
+        adjacency.neighbours_of_corners(self.faces, self.vertex_corners, after, before)
+        return read_only(after), read_only(before)
+
+    @cached_property
     def _halfedge_edges(self) -> tuple[Indices, Indices]:
-        partners = np.empty(3 * len(self.faces), np.intp)
-        first = np.empty_like(partners)
-        adjacency.edges_of_halfedges(self.faces, self.face_used, *self._corner_rows, partners, first)
+        partners = np.full(3 * len(self.faces), adjacency.UNUSED, np.intp)
+        first = partners.copy()
+        adjacency.edges_of_halfedges(*self._corner_rows, *self._corner_neighbours, partners, first)
         return read_only(partners), read_only(first)
 
     @property
@@ -167,7 +173,11 @@ class Topology:
 
     @cached_property
     def _neighbour_rows(self) -> tuple[Indices, Indices]:
-        starts, neighbours = adjacency.neighbours_of_vertices(self.faces, *self._corner_rows)
+        starts = np.zeros(self.n_vertices + 1, np.intp)
+        adjacency.count_neighbours(self.corner_offsets, *self._corner_neighbours, starts[1:])
+        np.cumsum(starts, out=starts)
+        neighbours = np.empty(starts[-1], np.intp)
+        adjacency.neighbours_of_vertices(self.corner_offsets, *self._corner_neighbours, starts, neighbours)
         return read_only(starts), read_only(neighbours)
 
     @property
@@ -177,5 +187,5 @@ class Topology:
 
     @property
     def neighbours(self) -> Indices:
-        """Vertices joined by an edge, each once, in the order of their vertices."""
+        """Vertices joined by an edge, each once, row after row."""
         return self._neighbour_rows[1]

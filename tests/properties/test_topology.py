@@ -51,14 +51,17 @@ def test_vertex_manifoldness(case):
     assert t.vertex_is_manifold.tolist() == [naive.vertex_is_manifold(faces.tolist(), v) for v in range(n)]
 
 
-@given(face_lists())
-def test_neighbours(case):
-    n, faces = case
-    t = _topology(n, faces)
+def _check_neighbours(t, n, faces):
     for v in range(n):
         row = t.neighbours[t.neighbour_offsets[v] : t.neighbour_offsets[v + 1]].tolist()
         assert len(row) == len(set(row))
         assert set(row) == {w for face in faces.tolist() if v in face for w in face} - {v}
+
+
+@given(face_lists())
+def test_neighbours(case):
+    n, faces = case
+    _check_neighbours(_topology(n, faces), n, faces)
 
 
 @given(face_lists(), st.data())
@@ -83,3 +86,22 @@ def test_relabelling(case, order):
     assert u.n_components == t.n_components
     np.testing.assert_array_equal(u.vertex_is_manifold[order], t.vertex_is_manifold)
     np.testing.assert_array_equal(u.vertex_is_boundary[order], t.vertex_is_boundary)
+
+
+@given(st.integers(2, 60), st.integers(0, 3), st.integers(0, 2**32))
+def test_vertices_with_many_corners(n, copies, seed):
+    """A fan of n triangles around one vertex, some of them repeated, numbered at random."""
+    rng = np.random.default_rng(seed)
+    rim = np.arange(1, n + 1)
+    faces = np.stack([np.zeros(n, int), rim, np.roll(rim, 1)], axis=1)
+    faces = np.concatenate([faces, faces[rng.integers(0, n, copies)]])
+    faces = rng.permutation(rng.permutation(n + 1)[faces])
+    t = _topology(n + 1, faces)
+    expected = naive.edge_faces(faces.tolist())
+    for h, ends in enumerate(t.halfedge_ends(np.arange(3 * len(faces))).tolist()):
+        found = expected[frozenset(ends)]
+        if len(found) == 2:
+            assert t.partners[h] // 3 == found[found[0] == h // 3]
+        else:
+            assert t.partners[h] == (-1 if len(found) == 1 else -2)
+    _check_neighbours(t, n + 1, faces)

@@ -13,6 +13,8 @@ NONMANIFOLD = -2
 """Partner of a half-edge whose edge has three or more faces."""
 UNUSED = -3
 """Partner of a half-edge of a face that takes no part."""
+MANY_CORNERS = 48
+"""Above this number of corners at a vertex, sorting them is faster than comparing all pairs."""
 
 
 @kernel
@@ -48,42 +50,68 @@ def corners_of_vertices(faces, face_used, n_vertices):
     return offsets, corners
 
 
-@kernel
-def edge_of_halfedge(h, faces, offsets, corners):
-    """Partner of half-edge h (or BOUNDARY, NONMANIFOLD) and the first half-edge of its edge.
-
-    Only the end with fewer corners is searched, so that a vertex of high degree costs no more than others.
-    """
-    a, b = faces[h // 3, h % 3], faces[h // 3, next_corner(h) % 3]
-    if offsets[b + 1] - offsets[b] < offsets[a + 1] - offsets[a]:
-        a, b = b, a
-    partner, first, count = BOUNDARY, h, 0
-    for i in range(offsets[a], offsets[a + 1]):
-        c = corners[i]
-        f = c // 3
-        if faces[f, next_corner(c) % 3] == b:
-            g = c
-        elif faces[f, previous_corner(c) % 3] == b:
-            g = previous_corner(c)
-        else:
-            continue
-        count += 1
-        first = min(first, g)
-        if g != h:
-            partner = g
-    return (partner if count <= 2 else NONMANIFOLD), first
+@parallel_kernel
+def neighbours_of_corners(faces, corners, after, before):
+    """Write the vertices after and before each corner of the rows, so that a row is read without jumps."""
+    for i in prange(corners.shape[0]):
+        f, k = corners[i] // 3, corners[i] % 3
+        after[i], before[i] = faces[f, (k + 1) % 3], faces[f, (k + 2) % 3]
 
 
 @parallel_kernel
-def edges_of_halfedges(faces, face_used, offsets, corners, partners, first):
-    """Write the partner and the first half-edge of the edge of every half-edge."""
-    for f in prange(faces.shape[0]):
-        for k in range(3):
-            h = 3 * f + k
-            if face_used[f]:
-                partners[h], first[h] = edge_of_halfedge(h, faces, offsets, corners)
-            else:
-                partners[h], first[h] = UNUSED, UNUSED
+def edges_of_halfedges(offsets, corners, after, before, partners, first):
+    """Write the partner and the first half-edge of the edge of every half-edge; each edge at its smaller vertex."""
+    for v in prange(offsets.shape[0] - 1):
+        start, stop = offsets[v], offsets[v + 1]
+        if stop - start > MANY_CORNERS:
+            join_sorted(v, corners[start:stop], after[start:stop], before[start:stop], partners, first)
+        else:
+            join_few(v, corners[start:stop], after[start:stop], before[start:stop], partners, first)
+
+
+@kernel
+def join_few(v, corners, after, before, partners, first):
+    """Join the half-edges between v and each greater vertex w by looking through all corners at v."""
+    for i in range(2 * corners.shape[0]):
+        w, h = end_of(i, corners, after, before)
+        if w < v:
+            continue
+        partner, least, count = BOUNDARY, h, 0
+        for j in range(corners.shape[0]):
+            if after[j] == w or before[j] == w:
+                g = corners[j] if after[j] == w else previous_corner(corners[j])
+                count += 1
+                least = min(least, g)
+                if g != h:
+                    partner = g
+        partners[h], first[h] = (partner if count <= 2 else NONMANIFOLD), least
+
+
+@kernel
+def join_sorted(v, corners, after, before, partners, first):
+    """The same for a vertex with many corners, in the order of the other vertex."""
+    order = np.argsort(np.concatenate((after, before)), kind="mergesort")
+    i = 0
+    while i < order.shape[0]:
+        w, h = end_of(order[i], corners, after, before)
+        stop, least = i, h
+        while stop < order.shape[0] and end_of(order[stop], corners, after, before)[0] == w:
+            least = min(least, end_of(order[stop], corners, after, before)[1])
+            stop += 1
+        for j in range(i, stop):
+            g = end_of(order[j], corners, after, before)[1]
+            other = end_of(order[i + stop - 1 - j], corners, after, before)[1]
+            if w > v:
+                partners[g] = BOUNDARY if stop - i == 1 else other if stop - i == 2 else NONMANIFOLD
+                first[g] = least
+        i = stop
+
+
+@kernel
+def end_of(i, corners, after, before):
+    """Other vertex and number of the i-th half-edge at a vertex: first those that leave it, then those that arrive."""
+    n = corners.shape[0]
+    return (after[i], corners[i]) if i < n else (before[i - n], previous_corner(corners[i - n]))
 
 
 @kernel
@@ -207,31 +235,42 @@ def face_orientations(faces, face_used, partners):
 
 
 @kernel
-def neighbours_of_vertices(faces, offsets, corners):
-    """Compressed rows: vertices that share a face with v, each once, in the order of their corners."""
-    n = offsets.shape[0] - 1
-    starts = np.zeros(n + 1, np.intp)
-    mark = np.full(n, -1, np.intp)
-    for v in range(n):
-        count = 0
-        for i in range(offsets[v], offsets[v + 1]):
-            c = corners[i]
-            for d in (next_corner(c), previous_corner(c)):
-                w = faces[d // 3, d % 3]
-                if mark[w] != v:
-                    mark[w] = v
-                    count += 1
-        starts[v + 1] = starts[v] + count
-    neighbours = np.empty(starts[n], np.intp)
-    mark[:] = -1
-    for v in range(n):
-        at = starts[v]
-        for i in range(offsets[v], offsets[v + 1]):
-            c = corners[i]
-            for d in (next_corner(c), previous_corner(c)):
-                w = faces[d // 3, d % 3]
-                if mark[w] != v:
-                    mark[w] = v
-                    neighbours[at] = w
-                    at += 1
-    return starts, neighbours
+def distinct_neighbours(after, before, out):
+    """Number of different vertices in a row of corners; with room in `out` they are written there."""
+    n = after.shape[0]
+    count = 0
+    if n > MANY_CORNERS:
+        ends = np.sort(np.concatenate((after, before)))
+        for i in range(2 * n):
+            if i == 0 or ends[i] != ends[i - 1]:
+                if out.shape[0] > 0:
+                    out[count] = ends[i]
+                count += 1
+        return count
+    for i in range(2 * n):
+        w = after[i] if i < n else before[i - n]
+        is_new = True
+        for j in range(i):
+            is_new &= (after[j] if j < n else before[j - n]) != w
+        if is_new:
+            if out.shape[0] > 0:
+                out[count] = w
+            count += 1
+    return count
+
+
+@parallel_kernel
+def count_neighbours(offsets, after, before, counts):
+    """Write the number of vertices that share a face with v to counts[v]."""
+    nothing = np.empty(0, np.intp)
+    for v in prange(offsets.shape[0] - 1):
+        row = slice(offsets[v], offsets[v + 1])
+        counts[v] = distinct_neighbours(after[row], before[row], nothing)
+
+
+@parallel_kernel
+def neighbours_of_vertices(offsets, after, before, starts, neighbours):
+    """Write the vertices that share a face with v, each once, to neighbours[starts[v]:starts[v + 1]]."""
+    for v in prange(offsets.shape[0] - 1):
+        row = slice(offsets[v], offsets[v + 1])
+        distinct_neighbours(after[row], before[row], neighbours[starts[v] : starts[v + 1]])
