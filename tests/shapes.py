@@ -105,7 +105,9 @@ def cone(n_around: int = 12, n_rings: int = 4, slope: float = 1.0) -> Shape:
 
 
 def tetrahedron() -> Shape:
-    return without_curvature([(1, 1, 1), (-1, -1, 1), (-1, 1, -1), (1, -1, -1)], [(0, 1, 3), (0, 2, 1), (0, 3, 2), (1, 2, 3)])
+    return without_curvature(
+        [(1, 1, 1), (-1, -1, 1), (-1, 1, -1), (1, -1, -1)], [(0, 1, 3), (0, 2, 1), (0, 3, 2), (1, 2, 3)]
+    )
 
 
 def cube() -> Shape:
@@ -134,20 +136,18 @@ def bow_tie() -> Shape:
     return without_curvature([(0, 0, 0), (1, 1, 0), (1, -1, 0), (-1, 1, 0), (-1, -1, 0)], [(0, 2, 1), (0, 3, 4)])
 
 
-def moebius_strip(n: int = 24) -> Shape:
-    """A band with one half turn: no orientation fits all faces."""
-    u = 2 * np.pi * np.arange(n) / n
-    rails = [np.stack([(1 + w * np.cos(u / 2)) * np.cos(u), (1 + w * np.cos(u / 2)) * np.sin(u), w * np.sin(u / 2)], 1)
-             for w in (-0.3, 0.0, 0.3)]  # fmt: skip
-    a = np.arange(n)
-    b = (a + 1) % n
-    last = b == 0
-    F = []
-    for k in range(2):
-        p, q = k * n + a, (k + 1) * n + a
-        p2, q2 = np.where(last, (2 - k) * n, k * n) + b, np.where(last, (1 - k) * n, (k + 1) * n) + b
-        F += [np.stack([p, p2, q2], 1), np.stack([p, q2, q], 1)]
-    return without_curvature(np.concatenate(rails), np.concatenate(F))
+def moebius_strip(n: int = 24, n_across: int = 5, half_width: float = 0.3) -> Shape:
+    """A band with one half turn: no orientation fits all faces.  The curvature is that of the band."""
+    u, w = 2 * np.pi * np.arange(n) / n, np.linspace(-half_width, half_width, n_across)[:, None]
+    r = 1 + w * np.cos(u / 2)
+    V = np.stack([r * np.cos(u), r * np.sin(u), w * np.sin(u / 2)], axis=2).reshape(-1, 3)
+    K = -0.25 / (r * r + 0.25 * w * w) ** 2
+    i, k = _grid(n, n_across - 1).astype(np.intp)
+    j = (i + 1) % n
+    here, there = np.stack([k, k + 1]), np.where(j == 0, n_across - 1 - np.stack([k, k + 1]), np.stack([k, k + 1]))
+    (a, d), (b, c) = here * n + i, there * n + j
+    F = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    return Shape(V, F, K.ravel(), np.full(len(V), np.nan))
 
 
 def two_components(n: int = 200) -> Shape:

@@ -57,7 +57,8 @@ def sectional(
     curvature of p, p, q.  Euler's formula is the leading term of these numbers; the others are the slopes of the
     plane and the third and fourth derivatives of the surface, and all are found together by least squares,
 
-    .. math:: \min \sum_q \Bigl(\frac{2 z_q}{d_q^2} - \frac{2}{d_q^2} \sum_{1 \le a+b \le 4} c_{ab} x_q^a y_q^b\Bigr)^2 .
+    .. math:: \min \sum_q \Bigl(\frac{2 z_q}{d_q^2}
+        - \frac{2}{d_q^2} \sum_{1 \le a+b \le 4} c_{ab} x_q^a y_q^b\Bigr)^2 .
 
     The neighbours are those in a ball, reached along edges and not beyond a fold.  The order 4 falls to 3 and 2 with
     fewer than 1.25 neighbours for each unknown or where they lie on too few lines, then to Euler's formula alone.

@@ -21,13 +21,12 @@ def stencil_surface(mesh: TriangleMesh) -> stencils.Surface:
     Without a consistent orientation the faces of each star are made to agree among themselves.
     """
     t = mesh.topology
-    align = not t.is_orientable
     vectors, normals = np.empty_like(mesh.vertices), np.empty_like(mesh.vertices)
     stencils.vertex_area_vectors(
-        mesh.vertices, mesh.faces, mesh.outward_flips, align, t.corner_offsets, t.vertex_corners, vectors
+        mesh.vertices, mesh.faces, mesh.outward_flips, not t.is_orientable, t.corner_offsets, t.vertex_corners, vectors
     )
-    stencils.ring_directions(vectors, align, t.neighbour_offsets, t.neighbours, normals)
-    return stencils.Surface(mesh.vertices, normals, t.neighbour_offsets, t.neighbours)
+    stencils.ring_directions(vectors, not t.is_orientable, t.neighbour_offsets, t.neighbours, normals)
+    return stencils.Surface(mesh.vertices, normals, t.neighbour_offsets, t.neighbours, t.is_orientable)
 
 
 def local_spacing(mesh: TriangleMesh) -> NDArray[np.float64]:
@@ -48,9 +47,7 @@ def local_spacing(mesh: TriangleMesh) -> NDArray[np.float64]:
 
 def empty_frames(n: int) -> monge.PrincipalFrames:
     """Principal frames of n vertices, all nan."""
-    return monge.PrincipalFrames(
-        np.full(n, np.nan), np.full(n, np.nan), *(np.full((n, 3), np.nan) for _ in range(3))
-    )
+    return monge.PrincipalFrames(np.full(n, np.nan), np.full(n, np.nan), *(np.full((n, 3), np.nan) for _ in range(3)))
 
 
 def _ring_sums(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:

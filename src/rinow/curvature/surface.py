@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._arrays import as_floats
 from rinow._executor import Executor
 from rinow.curvature.angle_defect import angle_defect
 from rinow.curvature.estimate import Estimate
@@ -27,12 +28,10 @@ Floats = NDArray[np.float64]
 INTRINSIC = {"angle_defect": angle_defect, "wald": wald}
 METHODS = ("auto", "sectional", "lifted", "wald", "angle_defect")
 QUALITIES = ("best", "fast")
-UNDEFINED = np.isin(np.arange(len(VertexStatus)), (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE))
-"""Whether a status leaves no value at all."""
-SHAPES = {name: () for name in ("gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "radius", "spread")} | {
-    name: (3,) for name in ("direction1", "direction2")
-}
-"""Shape of one row of each field."""
+NO_VALUE = (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE)
+SCALARS = ("gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "radius", "spread")
+DIRECTIONS = ("direction1", "direction2")
+QUARTILES = {"min": 0, "25 %": 25, "50 %": 50, "75 %": 75, "max": 100}
 POWERS = {"gaussian": 2, "spread": 2, "mean": 1, "k1": 1, "k2": 1, "curvedness": 1, "radius": -1}
 """Power of 1/length of each field that has a unit."""
 SAFE_SCALE = 2.0**100
@@ -82,23 +81,18 @@ class SurfaceCurvature:
     notes: tuple[str, ...] = ()
 
     def _repr_html_(self) -> str:
-        """Counts of each status and quartiles of each field, as a table."""
-        names = [s.name for s in VertexStatus for _ in range(int(np.any(self.status == s)))]
-        counts = ", ".join(f"{np.count_nonzero(self.status == VertexStatus[n])} {n}" for n in names)
-        rows = [f"<caption>Curvature by {self.method}: {counts}</caption>", _row("th", "field", QUARTILES)]
-        for name in ("gaussian", *(f for f in POWERS if f not in ("gaussian", "spread", "radius"))):
-            values = getattr(self, name)
-            finite = values[np.isfinite(values)]
+        """Counts of each status and quartiles of each scalar field, as a table."""
+        counts = ", ".join(f"{np.count_nonzero(self.status == s)} {s.name}" for s in VertexStatus if s in self.status)
+        rows = [f"<caption>Curvature by {self.method}: {counts}</caption>", _table_row("", QUARTILES)]
+        for name in SCALARS:
+            finite = getattr(self, name)[np.isfinite(getattr(self, name))]
             if len(finite):
-                rows.append(_row("td", name, [f"{q:.4g}" for q in np.percentile(finite, (0, 25, 50, 75, 100))]))
+                rows.append(_table_row(name, [f"{q:.4g}" for q in np.percentile(finite, list(QUARTILES.values()))]))
         return f"<table>{''.join(rows)}</table>"
 
 
-QUARTILES = ("min", "25 %", "50 %", "75 %", "max")
-
-
-def _row(tag: str, first: str, rest: Any) -> str:
-    return f"<tr><th>{first}</th>{''.join(f'<{tag}>{x}</{tag}>' for x in rest)}</tr>"
+def _table_row(name: str, cells: Iterable[str]) -> str:
+    return f"<tr><th>{name}</th>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>"
 
 
 def surface_curvature(
@@ -205,13 +199,14 @@ def _chosen_method(method: str, quality: str, mesh: TriangleMesh | IntrinsicMesh
 
 
 def _checked_radius(radius: float, method: str) -> float:
-    if not (np.isscalar(radius) and np.isreal(radius) and 0.0 < radius < np.inf):
+    value = as_floats(radius, "radius")
+    if value.ndim or not 0.0 < value < np.inf:
         raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
     if method != "sectional":
         raise InvalidInputError(
-            f"radius = {radius!r} is not for method {method!r}, which uses the star of each vertex; leave it out."
+            f"radius = {radius!r} is not for method {method!r}, which takes the star of each vertex; leave it out."
         )
-    return float(radius)
+    return float(value)
 
 
 def _estimate(
@@ -233,12 +228,12 @@ def _assembled(estimate: Estimate, status: NDArray[np.uint8], method: str) -> Su
     """The result in the unit and order of the mesh computed with."""
     finite = np.isfinite(estimate.gaussian)
     status[(status == VertexStatus.OK) & ~finite] = VertexStatus.UNRESOLVED
-    undefined = ~finite | UNDEFINED[status]
-    values: dict[str, Floats] = {}
-    for name, shape in SHAPES.items():
+    undefined = ~finite | np.isin(np.arange(len(VertexStatus)), NO_VALUE)[status]
+    values: dict[str, Any] = {}
+    for name in (*SCALARS, *DIRECTIONS):
         value = getattr(estimate, name, None)
         if value is None:
-            value = np.broadcast_to(np.nan, (len(status), *shape))
+            value = np.broadcast_to(np.nan, (len(status), 3) if name in DIRECTIONS else len(status))
         elif undefined.any():
             value[undefined] = np.nan
         values[name] = value
@@ -254,12 +249,13 @@ def _rescaled(result: SurfaceCurvature, unit: float) -> SurfaceCurvature:
     if unit == 1.0:
         return result
     with np.errstate(over="ignore"):
-        return replace(result, **{name: getattr(result, name) * unit**power for name, power in POWERS.items()})
+        values: dict[str, Any] = {name: getattr(result, name) * unit**power for name, power in POWERS.items()}
+    return replace(result, **values)
 
 
 def _relabelled(result: SurfaceCurvature, index: NDArray[np.intp] | None) -> SurfaceCurvature:
     """The result with row index[v] for vertex v."""
     if index is None:
         return result
-    rows = {f.name: getattr(result, f.name) for f in fields(result)}
-    return replace(result, **{name: value[index] for name, value in rows.items() if isinstance(value, np.ndarray)})
+    rows: dict[str, Any] = {name: getattr(result, name)[index] for name in (*SCALARS, *DIRECTIONS, "status")}
+    return replace(result, **rows)

@@ -44,7 +44,5 @@ def wald(mesh: TriangleMesh | IntrinsicMesh) -> Estimate:
     t = mesh.topology
     gaussian = np.empty(mesh.n_vertices)
     is_closed = t.vertex_is_manifold & ~t.vertex_is_boundary
-    stars.vertex_star_curvatures(
-        mesh.edge_lengths, t.corner_offsets, t.vertex_corners, is_closed, N_BLOCKS, gaussian
-    )
+    stars.vertex_star_curvatures(mesh.edge_lengths, t.corner_offsets, t.vertex_corners, is_closed, N_BLOCKS, gaussian)
     return Estimate(gaussian, ring_deviations(mesh, gaussian), longest_edges(mesh))

@@ -21,7 +21,7 @@ X_POWERS = np.array([1, 0, 2, 1, 0, 3, 2, 1, 0, 4, 3, 2, 1, 0])
 Y_POWERS = np.array([0, 1, 0, 1, 2, 0, 1, 2, 3, 0, 1, 2, 3, 4])
 SPARE = 1.25
 """Points for each unknown that an order needs."""
-PIVOT = 2e-6
+PIVOT = 5e-4
 """A monomial depends on the earlier ones when this share of its norm is left: far more than rounding leaves, for
 a fit that nearly interpolates is precise and wrong."""
 STEEP = 0.1
@@ -55,7 +55,7 @@ def scratch(n_vertices):
         np.empty((MAX_ORDER + 1, MAX_ORDER + 1)),
         np.empty((n_terms, n_terms)),
         np.empty(n_terms),
-        np.empty((3, n_terms)),
+        np.empty((4, n_terms)),
     )
 
 
@@ -84,7 +84,7 @@ def add_moments(points, n, powers, moments, heights):
 
 @kernel
 def factorise(moments, first, last, factor):
-    """Upper Cholesky factor, its diagonal inverted, for the monomials first..last - 1; the first dependent one or last."""
+    """Write the upper Cholesky factor of the monomials first..last - 1, its diagonal inverted; where it broke off."""
     for i in range(first, last):
         for j in range(i, last):
             factor[i, j] = moments[Y_POWERS[i] + Y_POWERS[j], X_POWERS[i] + X_POWERS[j]]
@@ -150,36 +150,44 @@ def fit_jet(points, n, order, work):
 
 
 @kernel
-def gaussian_variance(c, first, last, variance, factor, rows):
-    """Variance of K = (f11 f22 - f12^2) / W^4, to second order, for heights of the given variance at weight 1."""
+def second_derivative_covariance(n, first, last, work):
+    """Covariance of f11, f12, f22 for heights of variance 1/w, and the vertex's own, shared by all, of 1/mean w."""
+    rows, moments = work.rows, work.moments
     rows[:, :] = 0.0
+    for i in range(first, last):
+        rows[3, i] = moments[Y_POWERS[i], X_POWERS[i]] * math.sqrt(n / moments[0, 0])
+    forward(work.factor, first, last, rows[3])
     for r in range(3):
-        rows[r, r + 2] = 1.0
-        forward(factor, first, last, rows[r])
-    v11 = v12 = v22 = c12 = c13 = c23 = 0.0
+        rows[r, r + 2] = 1.0 if r == 1 else 2.0
+        forward(work.factor, first, last, rows[r])
+    a = b = c = d = e = f = x = y = z = 0.0
     for k in range(first, last):
-        a, b, d = 2.0 * rows[0, k], rows[1, k], 2.0 * rows[2, k]
-        v11, v12, v22 = v11 + a * a, v12 + b * b, v22 + d * d
-        c12, c13, c23 = c12 + a * b, c13 + a * d, c23 + b * d
-    f11, f12, f22 = 2.0 * c[2], c[3], 2.0 * c[4]
-    linear = f22 * f22 * v11 + 4.0 * f12 * f12 * v12 + f11 * f11 * v22
-    linear += 2.0 * f11 * f22 * c13 - 4.0 * f12 * (f22 * c12 + f11 * c23)
-    quadratic = v11 * v22 + c13 * c13 + 2.0 * v12 * v12
-    return variance * (max(linear, 0.0) + variance * quadratic) / (1.0 + c[0] ** 2 + c[1] ** 2) ** 4
+        p, q, r, s = rows[0, k], rows[1, k], rows[2, k], rows[3, k]
+        a, b, c, d, e, f = a + p * p, b + p * q, c + p * r, d + q * q, e + q * r, f + r * r
+        x, y, z = x + p * s, y + q * s, z + r * s
+    return a + x * x, b + x * y, c + x * z, d + y * y, e + y * z, f + z * z
 
 
 @kernel
 def standard_error(residual, n, first, last, work):
-    """Standard error of K from a weighted sum of squared residuals of n points; nan without a spare point."""
+    """Standard error, to second order, of K = (f11 f22 - f12^2) / W^4; nan without a spare point."""
     spare = n - (last - first)
     if spare == 0:
         return np.nan
-    return math.sqrt(gaussian_variance(work.coefficients, first, last, residual / spare, work.factor, work.rows))
+    v11, c12, c13, v12, c23, v22 = second_derivative_covariance(n, first, last, work)
+    coefficients = work.coefficients
+    f11, f12, f22 = 2.0 * coefficients[2], coefficients[3], 2.0 * coefficients[4]
+    linear = f22 * f22 * v11 + 4.0 * f12 * f12 * v12 + f11 * f11 * v22
+    linear += 2.0 * f11 * f22 * c13 - 4.0 * f12 * (f22 * c12 + f11 * c23)
+    quadratic = v11 * v22 + c13 * c13 + 2.0 * v12 * v12
+    variance = residual / spare
+    w2 = 1.0 + coefficients[0] ** 2 + coefficients[1] ** 2
+    return math.sqrt(variance * (max(linear, 0.0) + variance * quadratic)) / w2**2
 
 
 @kernel
 def fit_ball(v, radius, order, surface, work):
-    """Fit a jet to the metric ball; its monomials and residual, the number of points, the normal of its plane.
+    """Fit a jet to the metric ball; its monomials and residual, the number of points, and the frame of its plane.
 
     Where the surface turns out steep over the first tangent plane, the fit is made again over its own.
     """
@@ -187,22 +195,25 @@ def fit_ball(v, radius, order, surface, work):
     c = work.coefficients
     for attempt in range(2):
         n = stencils.metric_ball(v, radius, normal, 2 * v + attempt + 1, surface, work.members, work.marks)
-        stencils.local_coordinates(work.members, n, radius, normal, surface.vertices, work.points)
+        tangent = monge.some_tangent(normal)
+        stencils.local_coordinates(work.members, n, radius, tangent, normal, surface.vertices, work.points)
+        cos, sin = stencils.turn_to_long_axis(work.points, n - 1)
+        tangent = monge.combination(cos, tangent, sin, monge.cross(normal, tangent))
         first, last, residual = fit_jet(work.points, n - 1, order, work)
         if attempt == 1 or last == 0 or c[0] ** 2 + c[1] ** 2 < STEEP:
             break
-        normal = monge.graph_frame(c[0], c[1], normal)[6:]
-    return first, last, residual, n - 1, normal
+        normal = monge.graph_frame(c[0], c[1], tangent, normal)[2]
+    return first, last, residual, n - 1, tangent, normal
 
 
 @parallel_kernel
 def ball_jets(start, stop, radii, order, surface, n_blocks, frames, spread):
-    """Write frames and standard errors of vertices start..stop - 1, from metric balls; rows without stay as they are."""
+    """Write frames and standard errors of vertices start..stop - 1, from metric balls; without a fit none."""
     for block in prange(n_blocks):
         work = scratch(surface.vertices.shape[0])
         for v in range(start + (stop - start) * block // n_blocks, start + (stop - start) * (block + 1) // n_blocks):
             if not (surface.normals[v, 0] == surface.normals[v, 1] == surface.normals[v, 2] == 0.0):
-                first, last, residual, n, normal = fit_ball(v, radii[v], order, surface, work)
+                first, last, residual, n, tangent, normal = fit_ball(v, radii[v], order, surface, work)
                 if last > 0:
-                    monge.write_principal_frame(v - start, work.coefficients, radii[v], normal, frames)
+                    monge.write_principal_frame(v - start, work.coefficients, radii[v], tangent, normal, frames)
                     spread[v - start] = standard_error(residual, n, first, last, work) / radii[v] ** 2

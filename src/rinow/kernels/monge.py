@@ -19,24 +19,35 @@ class PrincipalFrames(NamedTuple):
 
 
 @kernel
-def tangent_frame(x, y, z):
-    """Two unit vectors that form a right-handed frame with the unit vector (x, y, z) (Duff et al. 2017)."""
-    s = math.copysign(1.0, z)
-    a = -1.0 / (s + z)
-    b = x * y * a
-    return 1.0 + s * x * x * a, s * b, -s * x, b, s + y * y * a, -y
+def cross(a, b):
+    """Vector product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 @kernel
-def graph_frame(f1, f2, normal):
-    """Orthonormal tangents, the first along the first coordinate, and normal of a graph over the plane of `normal`."""
+def combination(s, a, t, b):
+    """The vector s a + t b."""
+    return s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]
+
+
+@kernel
+def some_tangent(normal):
+    """A unit vector orthogonal to a unit normal, without a branch (Duff et al. 2017)."""
     x, y, z = normal
-    ax, ay, az, bx, by, bz = tangent_frame(x, y, z)
+    s = math.copysign(1.0, z)
+    a = -1.0 / (s + z)
+    return 1.0 + s * x * x * a, s * x * y * a, -s * x
+
+
+@kernel
+def graph_frame(f1, f2, tangent, normal):
+    """Orthonormal tangents, the first over `tangent`, and normal of a graph with slopes f1, f2 along it and across."""
     e = math.sqrt(1.0 + f1 * f1)
     w = math.sqrt(1.0 + f1 * f1 + f2 * f2)
-    ux, uy, uz = (ax + f1 * x) / e, (ay + f1 * y) / e, (az + f1 * z) / e
-    nx, ny, nz = (x - f1 * ax - f2 * bx) / w, (y - f1 * ay - f2 * by) / w, (z - f1 * az - f2 * bz) / w
-    return ux, uy, uz, ny * uz - nz * uy, nz * ux - nx * uz, nx * uy - ny * ux, nx, ny, nz
+    across = combination(f1 / w, tangent, f2 / w, cross(normal, tangent))
+    n = combination(1.0 / w, normal, -1.0, across)
+    t = combination(1.0 / e, tangent, f1 / e, normal)
+    return t, cross(n, t), n
 
 
 @kernel
@@ -53,8 +64,8 @@ def shape_operator(f1, f2, f11, f12, f22):
 
 
 @kernel
-def write_principal_frame(row, coefficients, unit, normal, frames):
-    """Diagonalise the shape operator of c0 x + c1 y + c2 x^2 + c3 x y + c4 y^2 + ... over the plane of `normal`."""
+def write_principal_frame(row, coefficients, unit, tangent, normal, frames):
+    """Diagonalise the shape operator of the graph c0 x + c1 y + c2 x^2 + c3 x y + c4 y^2 + ..., x along `tangent`."""
     f1, f2 = coefficients[0], coefficients[1]
     s11, s12, s22 = shape_operator(f1, f2, 2.0 * coefficients[2], coefficients[3], 2.0 * coefficients[4])
     mean, half = 0.5 * (s11 + s22), 0.5 * (s11 - s22)
@@ -63,8 +74,7 @@ def write_principal_frame(row, coefficients, unit, normal, frames):
     cos, sin = (radius + half, s12) if half >= 0.0 else (s12, radius - half)
     length = math.hypot(cos, sin)
     cos, sin = (cos / length, sin / length) if length > 0.0 else (1.0, 0.0)
-    ux, uy, uz, vx, vy, vz, nx, ny, nz = graph_frame(f1, f2, normal)
-    d1, d2, n = frames.direction1, frames.direction2, frames.normals
-    d1[row, 0], d1[row, 1], d1[row, 2] = cos * ux + sin * vx, cos * uy + sin * vy, cos * uz + sin * vz
-    d2[row, 0], d2[row, 1], d2[row, 2] = cos * vx - sin * ux, cos * vy - sin * uy, cos * vz - sin * uz
-    n[row, 0], n[row, 1], n[row, 2] = nx, ny, nz
+    t, b, n = graph_frame(f1, f2, tangent, normal)
+    p, q = combination(cos, t, sin, b), combination(cos, b, -sin, t)
+    for k in range(3):
+        frames.direction1[row, k], frames.direction2[row, k], frames.normals[row, k] = p[k], q[k], n[k]

@@ -88,6 +88,7 @@ def ring_quadrics(surface, n_blocks, frames):
             normal = (surface.normals[v, 0], surface.normals[v, 1], surface.normals[v, 2])
             if reach > 0.0 and normal != (0.0, 0.0, 0.0):
                 unit = math.sqrt(reach)
-                stencils.local_coordinates(members, n, unit, normal, surface.vertices, points)
+                tangent = monge.some_tangent(normal)
+                stencils.local_coordinates(members, n, unit, tangent, normal, surface.vertices, points)
                 if fit_quadric(points, n - 1, coefficients):
-                    monge.write_principal_frame(v, coefficients, unit, normal, frames)
+                    monge.write_principal_frame(v, coefficients, unit, tangent, normal, frames)

@@ -22,12 +22,13 @@ TINY = 1e-300
 
 
 class Surface(NamedTuple):
-    """Positions (n, 3), unit normals (n, 3) and compressed rows of neighbours."""
+    """Positions (n, 3), unit normals (n, 3), compressed rows of neighbours, and whether normals have signs that agree."""
 
     vertices: np.ndarray
     normals: np.ndarray
     offsets: np.ndarray
     neighbours: np.ndarray
+    is_oriented: bool
 
 
 @kernel
@@ -139,7 +140,7 @@ def metric_ball(v, radius, normal, epoch, surface, members, marks):
     The ball grows along edges only, and beyond the neighbours of v never past a fold: it enters no second sheet.
     """
     x, y, z = normal
-    vertices, normals, offsets, neighbours = surface
+    vertices, normals, offsets, neighbours, is_oriented = surface
     members[0] = v
     marks[v] = epoch
     done, n = 0, 1
@@ -150,7 +151,7 @@ def metric_ball(v, radius, normal, epoch, surface, members, marks):
                 marks[w] = epoch
                 if squared_distance(vertices, v, w) < radius * radius:
                     cosine = x * normals[w, 0] + y * normals[w, 1] + z * normals[w, 2]
-                    if done == 0 or cosine > FOLD_COSINE:
+                    if done == 0 or cosine > FOLD_COSINE or (not is_oriented and cosine < -FOLD_COSINE):
                         members[n] = w
                         n += 1
         done += 1
@@ -158,10 +159,10 @@ def metric_ball(v, radius, normal, epoch, surface, members, marks):
 
 
 @kernel
-def local_coordinates(members, n, unit, normal, vertices, points):
-    """Write to points[i] the member i + 1 seen from member 0: two tangential coordinates and the height, over `unit`."""
-    nx, ny, nz = normal
-    ax, ay, az, bx, by, bz = monge.tangent_frame(nx, ny, nz)
+def local_coordinates(members, n, unit, tangent, normal, vertices, points):
+    """Write to points[i] the tangential coordinates and the height of member i + 1 seen from member 0, over `unit`."""
+    (ax, ay, az), (nx, ny, nz) = tangent, normal
+    bx, by, bz = monge.cross(normal, tangent)
     v = members[0]
     for i in range(n - 1):
         w = members[i + 1]
@@ -170,6 +171,25 @@ def local_coordinates(members, n, unit, normal, vertices, points):
         points[i, 0] = ax * x + ay * y + az * z
         points[i, 1] = bx * x + by * y + bz * z
         points[i, 2] = nx * x + ny * y + nz * z
+
+
+@kernel
+def turn_to_long_axis(points, n):
+    """Turn the points about the normal until x is the direction of their largest spread; cosine and sine of the turn.
+
+    What a fit leaves out for lack of points then depends on the points, not on the axes of space.
+    """
+    xx = xy = yy = 0.0
+    for i in range(n):
+        xx += points[i, 0] * points[i, 0]
+        xy += points[i, 0] * points[i, 1]
+        yy += points[i, 1] * points[i, 1]
+    angle = 0.5 * math.atan2(2.0 * xy, xx - yy)
+    cos, sin = math.cos(angle), math.sin(angle)
+    for i in range(n):
+        x, y = points[i, 0], points[i, 1]
+        points[i, 0], points[i, 1] = cos * x + sin * y, cos * y - sin * x
+    return cos, sin
 
 
 @kernel
