@@ -10,7 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 from rinow import tolerances
 from rinow.errors import InvalidInputError, NotAMetricError
 
-__all__ = ["as_distance_matrix", "as_floats", "as_index_tuples", "as_indices", "as_points", "read_only"]
+__all__ = [
+    "as_distance_matrix",
+    "as_floats",
+    "as_index_tuples",
+    "as_indices",
+    "as_points",
+    "as_quadruples",
+    "read_only",
+]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -65,6 +73,16 @@ def as_index_tuples(values: ArrayLike, *, width: int, n_points: int, name: str) 
     if array.ndim != 2 or array.shape[1] != width:
         raise InvalidInputError(f"{name} has shape {array.shape}; give {width} indices per row, shape (n, {width}).")
     return as_indices(array, n_points, name)
+
+
+def as_quadruples(quadruples: ArrayLike) -> tuple[tuple[int, ...], Floats]:
+    """Leading shape, and the distances d12, d13, d14, d23, d24, d34 as rows (n, 6); their values are not checked."""
+    Q = as_floats(quadruples, "quadruples")
+    if Q.shape[-1:] != (6,):
+        raise InvalidInputError(
+            f"quadruples has shape {Q.shape}; give d12, d13, d14, d23, d24, d34 in the last axis, shape (..., 6)."
+        )
+    return Q.shape[:-1], Q.reshape(-1, 6)
 
 
 def as_distance_matrix(

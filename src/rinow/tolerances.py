@@ -29,3 +29,20 @@ what rounding leaves of an equality, while an excess above it still decides abou
 
 COMPARISON = 1e-12
 """Distances are compared with those of a model surface as if they were off by this share: rounding of geodesics."""
+
+PLANAR_ANGLE = 1e-7
+"""Angles at a point may miss 2π by this much in radians: rounding of the distances moves an angle near π by 2e-8."""
+
+SEEN_ANGLE = 1e-8
+"""A vertex this far in radians beside a cone of geodesics counts as seen: rounding may put a vertex exactly behind
+another one outside both cones that share its ray.  The error of the distance is of second order."""
+
+SADDLE_ANGLE = 1e-9
+"""Geodesics turn at an interior vertex when its total angle exceeds 2π by this much in radians; below `SEEN_ANGLE`, so
+that what a thinner shadow hides still counts as seen."""
+
+DETOUR = 1e-12
+"""A geodesic is dropped when another path is shorter by this share: above the rounding of long sums."""
+
+ZERO_EDGE = 1e-60
+"""An edge below this share of the longest one is a point: still far from underflow when its length is squared twice."""

@@ -12,7 +12,6 @@ from scipy.sparse import issparse
 from rinow import tolerances
 from rinow._arrays import as_floats, as_points
 from rinow.errors import InvalidInputError
-from rinow.geodesics.exact import geodesic_distances
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh
 from rinow.metric_space import MetricSpace
 
@@ -37,7 +36,7 @@ def metric_rows(space: Any) -> MetricRows:
 
     Parameters
     ----------
-    space : MetricSpace, mesh, (n, n) or (n, d) array_like, or graph
+    space : MetricSpace, mesh, (n, n) or (n, d) array_like, graph, or MetricRows
         Distances; a surface with exact geodesic distances of its vertices; points with straight distances; or edge
         lengths (scipy sparse or networkx) with shortest paths.  A square array holds distances.
 
@@ -46,33 +45,44 @@ def metric_rows(space: Any) -> MetricRows:
     InvalidInputError
         If `space` is none of these.
     """
+    if isinstance(space, MetricRows):
+        return space
     if isinstance(space, tuple | TriangleMesh | IntrinsicMesh) or hasattr(space, "faces"):
         return _surface(as_mesh(space))
     if issparse(space) or hasattr(space, "nodes"):
-        return _matrix(MetricSpace.from_graph(space))
-    if isinstance(space, MetricSpace):
-        return _matrix(space)
-    values = as_floats(space, "space")
-    if values.ndim == 2 and values.shape[0] == values.shape[1]:
-        return _matrix(MetricSpace(values))
-    return _cloud(as_points(values, "space"))
+        space = MetricSpace.from_graph(space)
+    if not isinstance(space, MetricSpace):
+        values = as_floats(space, "space")
+        if values.ndim != 2 or values.shape[0] != values.shape[1]:
+            return _cloud(as_points(values, "space"))
+        space = MetricSpace(values)
+    return _matrix(space)
 
 
 def _matrix(space: MetricSpace) -> MetricRows:
     """The rows of a matrix."""
     D = space.distances
-    return MetricRows(len(D), lambda i, limit: D[i], _rounding)
+
+    def row(i: int, limit: float) -> Floats:
+        return D[i]
+
+    return MetricRows(len(D), row, _rounding)
 
 
 def _cloud(points: Floats) -> MetricRows:
     """Points with straight distances."""
     if not len(points) or not np.isfinite(points).all():
         raise InvalidInputError(f"space has {len(points)} points, not all finite; give at least one, all finite.")
-    return MetricRows(len(points), lambda i, limit: np.linalg.norm(points - points[i], axis=1), _rounding)
+
+    def row(i: int, limit: float) -> Floats:
+        return np.linalg.norm(points - points[i], axis=1)
+
+    return MetricRows(len(points), row, _rounding)
 
 
 def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:
     """Vertices with exact geodesic distances."""
+    from rinow.geodesics.exact import geodesic_distances
 
     def row(i: int, limit: float) -> Floats:
         if np.isinf(limit):
@@ -83,10 +93,14 @@ def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:
         distances[i] = 0.0
         return distances
 
-    return MetricRows(mesh.n_vertices, row, lambda members: max(_chord_error(mesh, members), _rounding(members)))
+    def rtol(members: Indices) -> float:
+        return max(_chord_error(mesh, members), tolerances.COMPARISON)
+
+    return MetricRows(mesh.n_vertices, row, rtol)
 
 
 def _rounding(members: Indices) -> float:
+    """The error of distances that are as good as float64 allows."""
     return tolerances.COMPARISON
 
 

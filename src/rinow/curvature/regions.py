@@ -44,7 +44,7 @@ def region(
 
     Parameters
     ----------
-    space : MetricSpace, mesh, (n, n) or (n, d) array_like, or graph
+    space : MetricSpace, mesh, (n, n) or (n, d) array_like, graph, or MetricRows
         As for `metric_rows`.
     points : int or (k,) array_like of int, optional
         The points of the region, all by default.
@@ -70,7 +70,7 @@ def region(
     limit = np.inf
     if radius is not None or members.ndim == 0:
         if points is None or members.size != 1 or radius is None or not radius > 0:
-            raise InvalidInputError(f"points = {points!r}, radius = {radius!r}: a ball needs one point and a radius > 0.")
+            raise InvalidInputError(f"points = {points!r}, radius = {radius!r}: a ball has one centre and a radius > 0.")
         centre, limit = int(members.ravel()[0]), 2.0 * radius
         inside = rows.row(centre, limit) <= radius
         inside[centre] = False
