@@ -177,3 +177,40 @@ def test_nonfinite_coordinates_are_no_error(folder, capsys):
 def test_no_fields_no_colour_in_a_pipe(folder, capsys):
     assert main(["curvature", "in.ply"]) == 0
     assert "\x1b" not in capsys.readouterr().out
+
+
+def test_quadruple_prints_all_values(capsys):
+    r = str(2**0.5)
+    assert main(["quadruple", "1", r, "1", "1", r, "1", "--json"]) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert [v["kind"] for v in record["values"]] == ["nonplanar", "planar"]
+    assert record["values"][1]["curvature"] == pytest.approx(2.89244794846, rel=1e-11)
+    assert np.shape(record["values"][0]["coordinates"]) == (4, 3)
+    assert record["robinson"] is None
+
+
+def test_quadruple_with_a_linear_triple_has_robinsons_certificate(capsys):
+    assert main(["quadruple", "1", "2", "2", "1", "1.5", "2", "--json"]) == 0
+    record = json.loads(capsys.readouterr().out)
+    robinson = record["robinson"]
+    assert robinson["lower"] <= record["values"][0]["curvature"] <= robinson["upper"]
+    assert robinson["value"] == pytest.approx(
+        -16 / 15
+    )  # by hand from 6 (cos a + cos a') / ...; the curvature is -1.334
+    assert main(["quadruple", "1", "2", "2", "1", "1.5", "2"]) == 0
+    assert "certified" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("distances", "reason"), [("1 1 1 2 2 2", "branch"), ("1 2 3 1 2 1", "on a line")])
+def test_quadruple_says_why_there_is_no_value(capsys, distances, reason):
+    assert main(["quadruple", *distances.split()]) == 0
+    assert reason in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("distances", "fault"),
+    [("1 5 1 1 1 1", "d13 = 5 exceeds d12 + d23 = 2"), ("1 1 1 1 nan 1", "d24 = nan"), ("1 1 1 1 1 inf", "d34 = inf")],
+)
+def test_quadruple_names_what_is_not_a_metric(capsys, distances, fault):
+    assert main(["quadruple", *distances.split()]) == 1
+    assert fault in capsys.readouterr().err

@@ -14,7 +14,7 @@ from rich.table import Table
 
 from rinow.study.surface import SurfaceStudy, field_unit
 
-__all__ = ["print_counts", "print_json", "print_notes", "print_study", "working"]
+__all__ = ["console", "print_counts", "print_json", "print_notes", "print_study", "working"]
 
 
 @contextmanager
@@ -41,7 +41,7 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _console() -> Console:
+def console() -> Console:
     """Stdout; in a pipe wide enough that no cell is cut."""
     return Console() if sys.stdout.isatty() else Console(width=120)
 
@@ -52,7 +52,7 @@ def print_counts(title: str, counts: Mapping[str, Any]) -> None:
     for name, value in counts.items():
         table.add_row(name.replace("_", " "), f"{value:,}" if isinstance(value, int) else f"{value:.6g}")
     table.columns[1].justify = "right"
-    _console().print(table)
+    console().print(table)
 
 
 def print_study(title: str, study: SurfaceStudy) -> None:
@@ -65,15 +65,15 @@ def print_study(title: str, study: SurfaceStudy) -> None:
         table.add_column({"0": "least", "50": "median", "100": "greatest"}.get(p, f"{p} %"), justify="right")
     for name, levels in percentiles.items():
         table.add_row(name, field_unit(name, study.unit), *(f"{v:.4g}" for v in levels.values()))
-    console = _console()
-    console.print(table)
+    out = console()
+    out.print(table)
     status = ", ".join(f"{n:,} {name}" for name, n in study.status_counts().items())
     seconds = ", ".join(f"{step} {s:.2f} s" for step, s in study.seconds.items())
-    console.print(f"method {study.curvature.method}; vertices: {status}; {seconds}", highlight=False)
+    out.print(f"method {study.curvature.method}; vertices: {status}; {seconds}", highlight=False)
     print_notes(study.notes)
 
 
 def print_notes(notes: tuple[str, ...]) -> None:
     """Notes, one a line."""
     for note in notes:
-        _console().print(f"note: {note}", highlight=False, markup=False)
+        console().print(f"note: {note}", highlight=False, markup=False)

@@ -130,7 +130,7 @@ def robinson_curvature(quadruples: ArrayLike, *, order: int = 1, verify: bool = 
     -----
     With the Euclidean angles α between d12 and d24, and α' between d23 and d24, Robinson's formula [1]_ is
 
-    .. math:: K = rac{6 (\coslpha + \coslpha')}{d_{24} (d_{12} \sin^2lpha + d_{23} \sin^2lpha')}.
+    .. math:: K = \frac{6 (\cos\alpha + \cos\alpha')}{d_{24} (d_{12} \sin^2\alpha + d_{23} \sin^2\alpha')}.
 
     It has the sign of the curvature κ and is never less: :math:`K = \kappa + M\kappa^2/15 + N\kappa^3/1260 + \dots`
     with M, N rational in the distances; order 2 is :math:`2K/(1 + \sqrt{1 + 4MK/15})`, order 3 is

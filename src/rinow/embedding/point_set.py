@@ -1,0 +1,191 @@
+"""Many points at once: the surface of constant curvature that fits their distances best."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import eigh
+
+from rinow._arrays import as_distance_matrix, as_floats
+from rinow.errors import InvalidInputError, NotAMetricError
+from rinow.kernels import point_sets
+
+__all__ = ["CurvatureFit", "fit_curvature"]
+
+Floats = NDArray[np.float64]
+
+MAX_STEPS = 100
+SMALL_STEP = 1e-6
+"""Steps below this are taken as they are, as long as each is less than half the last one: then they are rounding."""
+SLACK = 1.0 + 1e-10
+"""The sum of squares may grow by this factor in a step: near the minimum it is flat to the square root of rounding."""
+SMALL_SLOPE = 1e-25
+"""Square of the derivative of a Gram matrix that is rounding, in units of the diameter: points of a line."""
+SMALLEST = -1e4
+"""At a smaller curvature rounding hides the second dimension, in units of 1/diameter²."""
+BEYOND = 1.5
+"""Steps may exceed by this factor the largest curvature that the perimeter of a triple allows."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CurvatureFit:
+    """Curvature that fits a batch of point sets.
+
+    Attributes
+    ----------
+    value : (...) ndarray of float
+        Curvature in 1/length².
+    standard_error : (...) ndarray of float
+        Of the value, if the distances have independent errors of one size; nan for four points, which fit exactly.
+    residual : (...) ndarray of float
+        That size, in the unit of length: the standard deviation of the errors of the distances.
+    """
+
+    value: Floats
+    standard_error: Floats
+    residual: Floats
+
+
+def fit_curvature(distances: ArrayLike) -> CurvatureFit:
+    r"""Curvature k for which n points come closest to a configuration in the surface S_k.
+
+    Parameters
+    ----------
+    distances : (..., n, n) array_like of float
+        Distances of n >= 4 points.
+
+    Returns
+    -------
+    CurvatureFit
+        `value`, `standard_error` and `residual`; nan for a matrix that is not symmetric with zero diagonal, finite
+        and non-negative, and where the iteration finds no minimum (points of a line or a tree).
+
+    Raises
+    ------
+    InvalidInputError
+        If the shape or the type is wrong or n < 4.
+
+    See Also
+    --------
+    embedding_curvatures : All exact values for four points.
+
+    Notes
+    -----
+    In S_k the vectors from a base point, the most central one, have the Gram matrix
+    :math:`H_{ij} = (E_{i0} + E_{j0} - E_{ij})/2 - k E_{i0} E_{j0}/4` with the squared chords
+    :math:`E = 4 s_k(d/2)^2`, and it has rank 2.  Minimised is the sum of squares of its other eigenvalues, by the
+    Gauss-Newton method from the solution of the linearised equation at k = 0.  Points of S_k are fitted to
+    rounding; on another surface the value tends to the curvature at the point to which the set shrinks, like the
+    diameter, or like its square for sets symmetric about that point.  Each step costs O(n³).
+
+    References
+    ----------
+    .. [1] L. M. Blumenthal, "Theory and Applications of Distance Geometry", 1953, chapter VII.
+
+    Examples
+    --------
+    Ten points of a sphere of radius 2:
+
+    >>> from rinow import SpaceForm
+    >>> sphere = SpaceForm(0.25)
+    >>> points = sphere.sample(10, 1.0, np.random.default_rng(5))
+    >>> fit = fit_curvature(sphere.distance(points[:, None], points))
+    >>> round(float(fit.value), 10)
+    0.25
+    """
+    D = as_floats(distances, "distances")
+    if D.ndim < 2 or D.shape[-1] != D.shape[-2] or D.shape[-1] < 4:
+        raise InvalidInputError(f"distances has shape {D.shape}; give square matrices of at least 4 points.")
+    flat = D.reshape(-1, *D.shape[-2:])
+    fits = np.array([_fit(matrix) for matrix in flat]).reshape(-1, 3)
+    value, error, residual = (column.reshape(D.shape[:-2])[()] for column in fits.T)
+    return CurvatureFit(value, error, residual)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Misfit:
+    """What is left of the Gram matrix and of its derivative in k beyond the two dimensions of the surface."""
+
+    k: float
+    chords: Floats
+    projector: Floats
+    rest: Floats
+    slope: Floats
+
+    @classmethod
+    def at(cls, D: Floats, k: float) -> _Misfit:
+        E, dE = np.empty_like(D), np.empty_like(D)
+        point_sets.squared_chords(D, k, E, dE)
+        e, de = E[0, 1:], dE[0, 1:]
+        gram = (e[:, None] + e - E[1:, 1:]) / 2 - k / 4 * np.outer(e, e)
+        slope = (de[:, None] + de - dE[1:, 1:]) / 2 - np.outer(e, e) / 4 - k / 4 * (np.outer(de, e) + np.outer(e, de))
+        plane = eigh(gram, subset_by_index=[len(e) - 2, len(e) - 1])[1]
+        projector = np.eye(len(e)) - plane @ plane.T
+        return cls(k, E, projector, projector @ gram @ projector, projector @ slope @ projector)
+
+    @property
+    def squares(self) -> float:
+        """Sum of the squares of the eigenvalues beyond the second."""
+        return float(np.vdot(self.rest, self.rest))
+
+    @property
+    def step(self) -> float:
+        """Step of the Gauss-Newton method; nan for points of a line."""
+        square = float(np.vdot(self.slope, self.slope))
+        return -float(np.vdot(self.rest, self.slope)) / square if square > SMALL_SLOPE else math.nan
+
+    def errors(self) -> tuple[float, float]:
+        """Standard deviations of k and of the distances, from the effects of an error in each distance."""
+        n = len(self.chords)
+        E, P = self.chords, self.projector
+        dE = 2 * np.sqrt(E * np.maximum(1 - self.k * E / 4, 0))  # derivatives of the squared chords in the distances
+        u = 0.5 - self.k / 4 * E[0, 1:]
+        W, Pu, diagonal = self.slope / np.vdot(self.slope, self.slope), P @ u, np.diag(P)
+        pairs, spokes = dE[1:, 1:] ** 2, dE[0, 1:] ** 2
+        effect_on_k = (pairs * W**2).sum() / 2 + (spokes * (2 * W @ u) ** 2).sum()
+        effect = (pairs * (np.outer(diagonal, diagonal) + P**2)).sum() / 4
+        effect += 2 * (spokes * (Pu @ Pu * diagonal + Pu**2)).sum()
+        n_conditions = (n - 2) * (n - 3) // 2
+        variance = self.squares / effect * n_conditions / max(n_conditions - 1, 1)
+        return (math.sqrt(variance * effect_on_k) if n > 4 else math.nan), math.sqrt(variance)
+
+
+def _fit(distances: Floats) -> tuple[float, float, float]:
+    """Value, standard error and residual of one matrix, in units of its diameter on the way."""
+    nothing = (math.nan, math.nan, math.nan)
+    try:
+        D = as_distance_matrix(distances)
+    except NotAMetricError:
+        return nothing
+    diameter = float(D.max())
+    if diameter == 0:
+        return nothing
+    order = np.argsort(D.max(axis=1), kind="stable")
+    misfit = _minimum(D[np.ix_(order, order)] / diameter)
+    if misfit is None:
+        return nothing
+    error, residual = misfit.errors()
+    return misfit.k / diameter**2, error / diameter**2, residual * diameter
+
+
+def _minimum(D: Floats) -> _Misfit | None:
+    """The least misfit near that of the linearised equation, by damped steps; None if none is found in the bounds."""
+    i, j = np.unravel_index(D.argmax(), D.shape)
+    largest = BEYOND * (2 * math.pi / (D[i, j] + float((D[i] + D[j]).max()))) ** 2
+    here, last = _Misfit.at(D, 0.0), math.inf
+    for _ in range(MAX_STEPS):
+        step = here.step
+        if math.isnan(step):
+            return None
+        if abs(step) <= SMALL_STEP * max(1.0, abs(here.k)) and (step == 0 or abs(step) >= last / 2):
+            return here if SMALLEST < here.k < largest else None
+        last = abs(step)
+        there = _Misfit.at(D, min(max(here.k + step, SMALLEST), largest))
+        while not there.squares <= SLACK * here.squares and abs(step) > SMALL_STEP:
+            step /= 4
+            there = _Misfit.at(D, min(max(here.k + step, SMALLEST), largest))
+        here = there
+    return None
