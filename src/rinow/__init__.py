@@ -12,6 +12,8 @@ from rinow._version import __version__
 
 _HOME = {
     "ConvergenceError": "errors",
+    "CurvatureFit": "embedding.point_set",
+    "EmbeddingCurvatures": "embedding.quadruple",
     "FileFormatError": "errors",
     "IntrinsicMesh": "mesh",
     "InvalidInputError": "errors",
@@ -20,6 +22,7 @@ _HOME = {
     "MetricSpace": "metric_space",
     "NotAMetricError": "errors",
     "RinowError": "errors",
+    "RobinsonCurvature": "embedding.semidependent",
     "SpaceForm": "embedding.spaceform",
     "SurfaceCurvature": "curvature.surface",
     "TriangleMesh": "mesh",
@@ -37,6 +40,14 @@ _HOME = {
     "is_cospherical": "embedding.cayley_menger",
     "is_euclidean_simplex": "embedding.cayley_menger",
     "simplex_volume": "embedding.cayley_menger",
+    "embedding_curvatures": "embedding.quadruple",
+    "fit_curvature": "embedding.point_set",
+    "is_linear": "embedding.quadruple",
+    "is_planar": "embedding.quadruple",
+    "is_semidependent": "embedding.semidependent",
+    "robinson_curvature": "embedding.semidependent",
+    "semidependent_order": "embedding.semidependent",
+    "star_curvature": "embedding.star",
 }
 
 __all__ = ["__version__", *sorted(_HOME)]  # pyright: ignore[reportUnsupportedDunderAll]

@@ -29,7 +29,7 @@ def smoothed(mesh, values):
 @pytest.mark.parametrize("method", ("auto", "lifted"))
 @pytest.mark.parametrize("side", ("left", "right"))
 def test_mean_curvature_of_white_matter_surfaces(side, method):
-    # FreeSurfer computed `curv` on a surface with sixteen times the vertices and smoothed it; it is positive in a sulcus.
+    # `curv` was computed on a surface with sixteen times the vertices, and smoothed; it is positive in a sulcus.
     # The best of the usual tools reaches 0.90 here and 0.955 after two steps of smoothing.
     mesh = TriangleMesh(*arrays(f"white_{side}.gii.gz"))
     reference = arrays(f"curv_{side}.gii.gz")[0].astype(np.float64)

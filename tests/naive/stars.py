@@ -18,7 +18,7 @@ def angle(a, b, c, k):
 
 
 def star_curvature(triangles):
-    """The k at which the angles opposite the first sides sum to 2 pi, between where they are too small and too large."""
+    """The k at which the angles opposite the first sides sum to 2 pi, by halving between too small and too large."""
     perimeter = max(map(sum, triangles))
     low, high = -400 / perimeter**2, (2 * math.pi / perimeter) ** 2 * (1 - 1e-12)
     for _ in range(200):

@@ -93,6 +93,20 @@ def test_curvature_grows_with_the_median_and_falls_with_the_outer_sides(hinge, s
             assert sign * other.values[0] > sign * k
 
 
+@given(hinges(), st.floats(1e-3, 1e3), st.sampled_from([1, 2, 3]), st.booleans())
+def test_robinson_scales_and_does_not_see_which_end_is_first(hinge, factor, order, verify):
+    d = semidependent(*hinge)
+    one = rinow.robinson_curvature(d, order=order, verify=verify)
+    assert one.lower <= hinge[-1] <= one.upper
+    other = rinow.robinson_curvature(factor * d[[3, 1, 5, 0, 4, 2]], order=order, verify=verify)
+    # Rounding the scaled distances moves the curvature by condition · eps / diameter².
+    condition = rinow.embedding_curvatures(d).condition[0]
+    allowed = 1000 * EPS * (condition / d.max() ** 2 + abs(one.value))
+    assert abs(other.value * factor**2 - one.value) <= allowed
+    for a, b in ((one.lower, other.lower), (one.upper, other.upper)):
+        assert a == b * factor**2 or abs(b * factor**2 - a) <= allowed
+
+
 @given(hinges(), st.floats(0.01, 3.0))
 def test_distances_of_a_linear_triple_compare(hinge, step):
     # p, q, r with q between; s beside them.  In S_k with a larger k the far side of each hinge is shorter.

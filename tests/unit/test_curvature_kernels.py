@@ -66,7 +66,8 @@ def test_ring_deviation_is_the_standard_deviation_of_the_closed_ring():
 
 def test_gauss_sweep_adds_what_is_missing_over_the_area():
     rng = np.random.default_rng(12)
-    K, defects, areas = rng.normal(size=(3, MESH.n_vertices))[:2].tolist() + [rng.uniform(1, 2, MESH.n_faces)]
+    K, defects = rng.normal(size=(2, MESH.n_vertices)).tolist()
+    areas = rng.uniform(1, 2, MESH.n_faces)
     out, closed, t = np.empty(MESH.n_vertices), np.ones(MESH.n_vertices, bool), MESH.topology
     stars.gauss_sweep(
         np.array(K), np.array(defects), areas, MESH.faces, t.corner_offsets, t.vertex_corners, closed, out

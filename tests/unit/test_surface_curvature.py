@@ -186,6 +186,14 @@ def test_moebius_strip(method):
     assert ("orientation" in " ".join(c.notes)) == (method in WITH_POSITIONS)
 
 
+def test_the_centre_of_a_large_fan_is_no_shortcut_between_its_neighbours():
+    # A cone of slope 1 whose apex has 300 neighbours, at distance 1 from the axis: two rings around one of them would
+    # be the whole circle.  The mean curvature of the cone is cos(45°)/2 there.
+    c = curvature(shapes.cone(300, 6), method="lifted")
+    assert (c.status[:-300] == VertexStatus.OK).all()
+    np.testing.assert_allclose(c.mean[1:301], 0.5**0.5 / 2, rtol=0.01)
+
+
 # ------------------------------------------------------------------ damaged meshes
 
 
@@ -212,15 +220,20 @@ def damaged():
     yield "inside out", V, F[:, ::-1], []
     a, b, c = F[star[0]]
     near = 0.5 * (V[a] + V[b]) * (1 - 1e-9) + 1e-9 * V[c]
-    yield "sliver", np.concatenate([V, [near]]), np.concatenate(
-        [np.delete(F, star[0], axis=0), [[a, n, c], [n, b, c], [a, b, n]]]
-    ), [a, b, c]
+    yield (
+        "sliver",
+        np.concatenate([V, [near]]),
+        np.concatenate([np.delete(F, star[0], axis=0), [[a, n, c], [n, b, c], [a, b, n]]]),
+        [a, b, c],
+    )
     other = shapes.tetrahedron()
     yield "second component", np.concatenate([V, other.vertices + 9]), np.concatenate([F, other.faces + n]), []
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize(("name", "vertices", "faces", "centre"), list(damaged()), ids=lambda x: x if isinstance(x, str) else "")
+@pytest.mark.parametrize(
+    ("name", "vertices", "faces", "centre"), list(damaged()), ids=lambda x: x if isinstance(x, str) else ""
+)
 def test_damage_stays_local(name, vertices, faces, centre, method):
     whole = curvature(SPHERE, method=method)
     c = surface_curvature((vertices, faces), method=method)
@@ -299,7 +312,9 @@ def test_notes_name_the_faults():
     half = V[F].mean(axis=1)[:, 2] > 0
     seam = surface_curvature((cut, np.where(half[:, None], F + len(V), F)), method="angle_defect")
     n_seam = np.intersect1d(F[half], F[~half]).size
-    assert seam.notes == (f"{2 * n_seam} boundary vertices lie on others: these seams are open; weld them to close them.",)
+    assert seam.notes == (
+        f"{2 * n_seam} boundary vertices lie on others: these seams are open; weld them to close them.",
+    )
 
 
 # ------------------------------------------------------------------ interface

@@ -12,6 +12,8 @@ __all__ = ["N_BLOCKS", "empty_frames", "local_spacing", "stencil_surface"]
 
 N_BLOCKS = 16
 """Pieces a kernel cuts its vertices into; each has scratch of its own."""
+NEEDLES = 3.0
+"""Largest ratio of the mean edge to that of equilateral triangles of the same area that counts."""
 
 
 def stencil_surface(mesh: TriangleMesh) -> stencils.Surface:
@@ -34,7 +36,8 @@ def local_spacing(mesh: TriangleMesh) -> NDArray[np.float64]:
 
     It is the larger of the mean edge over one ring and the edge of equilateral triangles with the mean area per
     vertex over two rings.  The first sees to it that a stretched mesh has enough rows of vertices in a ball
-    of a few spacings, the second that a mesh with slivers and tiny triangles has enough vertices.
+    of a few spacings, the second that a mesh with slivers and tiny triangles has enough vertices.  Needles count
+    up to three times the second only, or balls on them would hold any number of vertices.
     """
     t = mesh.topology
     edges = np.empty(mesh.n_vertices)
@@ -42,7 +45,8 @@ def local_spacing(mesh: TriangleMesh) -> NDArray[np.float64]:
     edges = _ring_sums(mesh, edges) / (np.diff(t.neighbour_offsets) + 1)
     shares = np.where(t.vertex_is_boundary, 0.5, 1.0)
     areas = _ring_sums(mesh, _ring_sums(mesh, mesh.vertex_areas)) / _ring_sums(mesh, _ring_sums(mesh, shares))
-    return np.maximum(edges, np.sqrt(2.0 / np.sqrt(3.0) * areas))
+    even = np.sqrt(2.0 / np.sqrt(3.0) * areas)
+    return np.clip(edges, even, NEEDLES * even)
 
 
 def empty_frames(n: int) -> monge.PrincipalFrames:

@@ -11,28 +11,33 @@ import numpy as np
 
 from rinow.kernels._jit import kernel, parallel_kernel, prange
 from rinow.kernels.quadruples import COINCIDENT, NOT_A_METRIC, other_three, other_two, read_quadruple
-from rinow.kernels.spaceform import FAR, FULL_CIRCLE, log_sine_derivative, sine
+from rinow.kernels.spaceform import FAR, FULL_CIRCLE, log_sine_derivative, sine_and_log_derivative
+
+
+@kernel
+def decay_and_log_derivative(x, k):
+    """1 - exp(-2√-k x), which is s_k(x) without its growth, and the derivative of ln s_k(x) in k; for k < 0."""
+    t = math.sqrt(-k) * x
+    decay = -math.expm1(-2.0 * t)
+    return decay, (t * (2.0 - decay) / decay - 1.0) / (2.0 * k) if decay > 0.0 else 0.0
 
 
 @kernel
 def log_cotangent(s, g, g1, g2, k):
-    """Ln cot(angle/2); -inf for the angle π, inf for the angle 0."""
+    """ln cot(angle/2) and its derivative in k, negative; -inf for the angle π, inf for the angle 0."""
     if k * s * s >= FAR:
-        exponent, over1, over2, under1, under2 = 0.0, sine(s, k), sine(g, k), sine(g1, k), sine(g2, k)
+        exponent = 0.0
+        (over1, q1), (over2, q2) = sine_and_log_derivative(s, k), sine_and_log_derivative(g, k)
+        (under1, q3), (under2, q4) = sine_and_log_derivative(g1, k), sine_and_log_derivative(g2, k)
     else:
-        exponent, m = math.sqrt(-k) * g, -2.0 * math.sqrt(-k)
-        over1, over2, under1, under2 = math.expm1(m * s), math.expm1(m * g), math.expm1(m * g1), math.expm1(m * g2)
+        exponent = math.sqrt(-k) * g
+        (over1, q1), (over2, q2) = decay_and_log_derivative(s, k), decay_and_log_derivative(g, k)
+        (under1, q3), (under2, q4) = decay_and_log_derivative(g1, k), decay_and_log_derivative(g2, k)
+    slope = 0.5 * ((q1 - q3) + (q2 - q4))
     if under1 == 0.0 or under2 == 0.0:
-        return np.inf
+        return np.inf, slope
     ratio = (over1 / under1) * (over2 / under2)
-    return exponent + 0.5 * math.log(ratio) if ratio > 0.0 else -np.inf
-
-
-@kernel
-def log_cotangent_derivative(s, g, g1, g2, k):
-    """Derivative of ln cot(angle/2) in k: negative, every angle grows with k."""
-    slope = log_sine_derivative(s, k) - log_sine_derivative(g1, k)
-    return 0.5 * (slope + (log_sine_derivative(g, k) - log_sine_derivative(g2, k)))
+    return (exponent + 0.5 * math.log(ratio) if ratio > 0.0 else -np.inf), slope
 
 
 @kernel
@@ -75,14 +80,11 @@ def balance(v, o, k, G):
     nonplanar one, where v and o are opposite corners.
     """
     i, j, m = three_triples(v, o)
-    a = log_cotangent(G[i, i], G[i, v], G[i, j], G[i, m], k)
-    b = log_cotangent(G[j, j], G[j, v], G[j, i], G[j, m], k)
-    c = log_cotangent(G[m, m], G[m, v], G[m, i], G[m, j], k)
-    value, a, b, c = around(a, b, c) if o < 0 else across(a, b, c)
-    slope = a * log_cotangent_derivative(G[i, i], G[i, v], G[i, j], G[i, m], k)
-    slope += b * log_cotangent_derivative(G[j, j], G[j, v], G[j, i], G[j, m], k)
-    slope += c * log_cotangent_derivative(G[m, m], G[m, v], G[m, i], G[m, j], k)
-    return value, slope
+    a, da = log_cotangent(G[i, i], G[i, v], G[i, j], G[i, m], k)
+    b, db = log_cotangent(G[j, j], G[j, v], G[j, i], G[j, m], k)
+    c, dc = log_cotangent(G[m, m], G[m, v], G[m, i], G[m, j], k)
+    value, wa, wb, wc = around(a, b, c) if o < 0 else across(a, b, c)
+    return value, wa * da + wb * db + wc * dc
 
 
 @kernel
@@ -91,7 +93,7 @@ def angle_sum(v, k, G):
     total = 0.0
     for t in three_triples(v, -1):
         i, j = other_two(v, t)
-        total += 2.0 * math.atan(math.exp(-log_cotangent(G[t, t], G[t, v], G[t, i], G[t, j], k)))
+        total += 2.0 * math.atan(math.exp(-log_cotangent(G[t, t], G[t, v], G[t, i], G[t, j], k)[0]))
     return total
 
 
@@ -115,15 +117,16 @@ def _side_derivatives(weight, s, g, g1, g2, k):
 def condition(v, o, k, G):
     """Largest derivative of a zero k of `balance` in a distance, by the implicit function theorem."""
     i, j, m = three_triples(v, o)
-    a = log_cotangent(G[i, i], G[i, v], G[i, j], G[i, m], k)
-    b = log_cotangent(G[j, j], G[j, v], G[j, i], G[j, m], k)
-    c = log_cotangent(G[m, m], G[m, v], G[m, i], G[m, j], k)
+    a, da = log_cotangent(G[i, i], G[i, v], G[i, j], G[i, m], k)
+    b, db = log_cotangent(G[j, j], G[j, v], G[j, i], G[j, m], k)
+    c, dc = log_cotangent(G[m, m], G[m, v], G[m, i], G[m, j], k)
     _, a, b, c = around(a, b, c) if o < 0 else across(a, b, c)
+    slope = a * da + b * db + c * dc
     a, a_j, a_m = _side_derivatives(a, G[i, i], G[i, v], G[i, j], G[i, m], k)
     b, b_i, b_m = _side_derivatives(b, G[j, j], G[j, v], G[j, i], G[j, m], k)
     c, c_i, c_j = _side_derivatives(c, G[m, m], G[m, v], G[m, i], G[m, j], k)
     largest = max(abs(a), abs(b), abs(c), abs(b_i + c_i), abs(a_j + c_j), abs(a_m + b_m))
-    return largest / abs(balance(v, o, k, G)[1])
+    return largest / abs(slope)
 
 
 @parallel_kernel

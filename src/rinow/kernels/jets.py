@@ -11,7 +11,7 @@ import numpy as np
 
 from rinow.kernels import monge, stencils
 from rinow.kernels._jit import kernel, parallel_kernel, prange
-from rinow.kernels.stencils import QUADRIC_POINTS, SOFTENING
+from rinow.kernels.stencils import PIVOT, QUADRIC_POINTS, SOFTENING
 
 MAX_ORDER = 4
 WIDTH = 2 * MAX_ORDER + 1
@@ -21,9 +21,6 @@ X_POWERS = np.array([1, 0, 2, 1, 0, 3, 2, 1, 0, 4, 3, 2, 1, 0])
 Y_POWERS = np.array([0, 1, 0, 1, 2, 0, 1, 2, 3, 0, 1, 2, 3, 4])
 SPARE = 1.25
 """Points for each unknown that an order needs."""
-PIVOT = 5e-4
-"""A monomial depends on the earlier ones when this share of its norm is left: far more than rounding leaves, for
-a fit that nearly interpolates is precise and wrong."""
 STEEP = 0.1
 """Squared slope of the fitted surface from which its own tangent plane is the better one to fit over."""
 
@@ -195,10 +192,7 @@ def fit_ball(v, radius, order, surface, work):
     c = work.coefficients
     for attempt in range(2):
         n = stencils.metric_ball(v, radius, normal, 2 * v + attempt + 1, surface, work.members, work.marks)
-        tangent = monge.some_tangent(normal)
-        stencils.local_coordinates(work.members, n, radius, tangent, normal, surface.vertices, work.points)
-        cos, sin = stencils.turn_to_long_axis(work.points, n - 1)
-        tangent = monge.combination(cos, tangent, sin, monge.cross(normal, tangent))
+        tangent = stencils.local_coordinates(work.members, n, radius, normal, surface.vertices, work.points)
         first, last, residual = fit_jet(work.points, n - 1, order, work)
         if attempt == 1 or last == 0 or c[0] ** 2 + c[1] ** 2 < STEEP:
             break

@@ -10,10 +10,7 @@ import numpy as np
 
 from rinow.kernels import monge, stencils
 from rinow.kernels._jit import kernel, parallel_kernel, prange
-from rinow.kernels.stencils import QUADRIC_POINTS, SOFTENING
-
-PIVOT = 1e-6
-"""A term depends on the earlier ones when this share of its norm is left."""
+from rinow.kernels.stencils import PIVOT, QUADRIC_POINTS, SOFTENING
 
 
 @kernel
@@ -48,32 +45,39 @@ def solve_three(a, b, c, d, e, f, x, y, z):
 
 
 @kernel
-def fit_quadric(points, n, coefficients):
-    """Write c of z = c0 x + c1 y + c2 x^2 + c3 x y + c4 y^2; whether the points determine it.
+def solve_quadric(moments, tilted, coefficients):
+    """Write c of z = c0 x + c1 y + c2 x^2 + c3 x y + c4 y^2, the slopes eliminated first; whether it is determined.
 
-    The slopes are eliminated first.  Too few points leave them 0: Euler's formula in the given tangent plane.
+    Without `tilted` the slopes are 0: Euler's formula in the given tangent plane.
     """
-    if n < QUADRIC_POINTS:
-        stencils.stretch_to_chords(points, n)
-    (xx, xy, yy), t, q, (zx, zy), g = quadric_moments(points, n)
+    (xx, xy, yy), t, q, (zx, zy), g = moments
     det = xx * yy - xy * xy
-    tilted = n >= QUADRIC_POINTS and det > PIVOT * xx * yy
+    if tilted and not det > PIVOT * xx * yy:
+        return False
     ia, ib, ic = (yy / det, -xy / det, xx / det) if tilted else (0.0, 0.0, 0.0)
     a0, a1, a2 = ia * t[0] + ib * t[1], ia * t[1] + ib * t[2], ia * t[2] + ib * t[3]
     b0, b1, b2 = ib * t[0] + ic * t[1], ib * t[1] + ic * t[2], ib * t[2] + ic * t[3]
-    s00 = q[0] - a0 * t[0] - b0 * t[1]
-    if n < 3 or not s00 > PIVOT * q[0]:
-        return False
-    s11, s22 = q[2] - a1 * t[1] - b1 * t[2], q[4] - a2 * t[2] - b2 * t[3]
+    s00, s11, s22 = q[0] - a0 * t[0] - b0 * t[1], q[2] - a1 * t[1] - b1 * t[2], q[4] - a2 * t[2] - b2 * t[3]
     s01, s02, s12 = q[1] - a0 * t[1] - b0 * t[2], q[2] - a0 * t[2] - b0 * t[3], q[3] - a1 * t[2] - b1 * t[3]
     g0, g1, g2 = g[0] - a0 * zx - b0 * zy, g[1] - a1 * zx - b1 * zy, g[2] - a2 * zx - b2 * zy
     c2, c3, c4, p1, p2 = solve_three(s00, s01, s02, s11, s12, s22, g0, g1, g2)
-    if not (p1 > PIVOT * q[2] and p2 > PIVOT * q[4]):
+    if not (s00 > PIVOT * q[0] and p1 > PIVOT * q[2] and p2 > PIVOT * q[4]):
         return False
     zx, zy = zx - c2 * t[0] - c3 * t[1] - c4 * t[2], zy - c2 * t[1] - c3 * t[2] - c4 * t[3]
     coefficients[0], coefficients[1] = ia * zx + ib * zy, ib * zx + ic * zy
     coefficients[2], coefficients[3], coefficients[4] = c2, c3, c4
     return True
+
+
+@kernel
+def fit_quadric(points, n, coefficients):
+    """Fit a quadric, or Euler's formula where points are too few or too much in line; whether either is determined."""
+    if n < QUADRIC_POINTS:
+        stencils.stretch_to_chords(points, n)
+    moments = quadric_moments(points, n)
+    if n >= QUADRIC_POINTS and solve_quadric(moments, True, coefficients):
+        return True
+    return n >= 3 and solve_quadric(moments, False, coefficients)
 
 
 @parallel_kernel
@@ -88,7 +92,6 @@ def ring_quadrics(surface, n_blocks, frames):
             normal = (surface.normals[v, 0], surface.normals[v, 1], surface.normals[v, 2])
             if reach > 0.0 and normal != (0.0, 0.0, 0.0):
                 unit = math.sqrt(reach)
-                tangent = monge.some_tangent(normal)
-                stencils.local_coordinates(members, n, unit, tangent, normal, surface.vertices, points)
+                tangent = stencils.local_coordinates(members, n, unit, normal, surface.vertices, points)
                 if fit_quadric(points, n - 1, coefficients):
                     monge.write_principal_frame(v, coefficients, unit, tangent, normal, frames)

@@ -106,8 +106,8 @@ def robinson(d, order):
 @kernel
 def straightness(k, G):
     """ln(cot A/2 · cot A'/2) in S_k for the two angles at q: decreasing in k, 0 where they make up a straight angle."""
-    right = log_cotangent(G[0, 0], G[0, 1], G[0, 2], G[0, 3], k)
-    return right + log_cotangent(G[2, 2], G[2, 1], G[2, 0], G[2, 3], k)
+    right = log_cotangent(G[0, 0], G[0, 1], G[0, 2], G[0, 3], k)[0]
+    return right + log_cotangent(G[2, 2], G[2, 1], G[2, 0], G[2, 3], k)[0]
 
 
 @kernel

@@ -66,14 +66,27 @@ def tangent(x, k):
 
 
 @kernel
-def log_sine_derivative(x, k):
-    """Derivative of ln s_k(x) in k: q(x) = (√k x cot(√k x) - 1)/(2k), which is -x²/6 at k = 0."""
+def sine_and_log_derivative(x, k):
+    """s_k(x) and the derivative of ln s_k(x) in k, q(x) = (√k x cot(√k x) - 1)/(2k), which is -x²/6 at k = 0."""
     u = k * x * x
     if abs(u) <= 1.0:
-        return -0.5 * x * x * (_polynomial(LAG, u) / _polynomial(SINE, u))
+        ratio = _polynomial(SINE, u)
+        return x * ratio, -0.5 * x * x * (_polynomial(LAG, u) / ratio)
     t = math.sqrt(abs(u))
-    cotangent = t / math.tan(t) if u > 0.0 else t / math.tanh(t)
-    return (cotangent - 1.0) / (2.0 * k)
+    if u > 0.0:
+        sin = math.sin(t)
+        return x * (sin / t), (t * (math.cos(t) / sin) - 1.0) / (2.0 * k)
+    if t > OVERFLOW:
+        return np.inf, (t - 1.0) / (2.0 * k)
+    e = math.exp(t)
+    sinh = 0.5 * (e - 1.0 / e)
+    return x * (sinh / t), (t * (0.5 * (e + 1.0 / e) / sinh) - 1.0) / (2.0 * k)
+
+
+@kernel
+def log_sine_derivative(x, k):
+    """Derivative of ln s_k(x) in k."""
+    return sine_and_log_derivative(x, k)[1]
 
 
 @kernel
@@ -201,7 +214,7 @@ def area(a, b, c, k):
 def is_triangle(a, b, c):
     """Whether a, b, c are lengths that satisfy the triangle inequality up to rounding; not if one is nan or inf."""
     longest = max(a, b, c)
-    return min(a, b, c) >= 0.0 and longest - (a + b + c - longest) <= TRIANGLE_INEQUALITY * longest < np.inf
+    return min(a, b, c) >= 0.0 and longest < np.inf and 2.0 * longest - (a + b + c) <= TRIANGLE_INEQUALITY * longest
 
 
 @parallel_kernel

@@ -12,6 +12,7 @@ from rinow.kernels._jit import kernel, parallel_kernel, prange
 from rinow.kernels.quadruples import PAIR, other_two
 from rinow.kernels.spaceform import angle, arc, side, sine
 
+
 @kernel
 def place(r, theta, k, point):
     """Write the point at distance r and direction theta from the origin."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from rinow.kernels._jit import kernel, parallel_kernel, prange
-from rinow.kernels.spaceform import angle_and_derivative
+from rinow.kernels.spaceform import angle_and_derivative, is_triangle
 from rinow.tolerances import DEGENERATE_AREA
 
 FULL_TURN = 2.0 * math.pi
@@ -72,6 +72,19 @@ def star_curvature(sides):
     if limit - k <= CLOSE * limit and star_angle(sides, limit)[0] < FULL_TURN - END_TOLERANCE:
         return np.nan
     return k
+
+
+@parallel_kernel
+def closed_star_curvatures(radii, chords, out):
+    """Write the curvature of each row, chord i joining the ends of radii i and i + 1; nan for a row that is no star."""
+    n = radii.shape[1]
+    for row in prange(out.shape[0]):
+        sides = np.empty((n, 3))
+        is_star = True
+        for i in range(n):
+            sides[i, 0], sides[i, 1], sides[i, 2] = chords[row, i], radii[row, i], radii[row, (i + 1) % n]
+            is_star &= is_triangle(sides[i, 0], sides[i, 1], sides[i, 2])
+        out[row] = star_curvature(sides) if is_star else np.nan
 
 
 @parallel_kernel

@@ -15,6 +15,12 @@ FOLD_COSINE = 0.2
 plane has no overhang, and a sheet folded back is another part of the surface."""
 QUADRIC_POINTS = 7
 """Fewer points than this leave the tangent plane as it is: their circles are fitted by Euler's formula alone."""
+HUB = 100
+"""A vertex with more neighbours than this, such as the centre of a fan, joins the vertices around it to far too many:
+stencils of others do not grow through it, or their total cost would be the square of its degree."""
+PIVOT = 5e-4
+"""A monomial depends on the earlier ones when this share of its norm is left: far more than rounding leaves, for
+a fit that nearly interpolates is precise and wrong."""
 CANCELLED = 0.1
 """A sum of vectors shorter than this share of the first one has no direction of its own."""
 TINY = 1e-300
@@ -22,7 +28,7 @@ TINY = 1e-300
 
 
 class Surface(NamedTuple):
-    """Positions (n, 3), unit normals (n, 3), compressed rows of neighbours, and whether normals have signs that agree."""
+    """Positions (n, 3), unit normals (n, 3), compressed rows of neighbours, and whether the normals agree in sign."""
 
     vertices: np.ndarray
     normals: np.ndarray
@@ -112,6 +118,13 @@ def squared_distance(vertices, i, j):
 
 
 @kernel
+def spokes(w, is_centre, offsets):
+    """Rows of the neighbours of w that a stencil grows to: all of them, but none through a hub."""
+    first, last = offsets[w], offsets[w + 1]
+    return first, (last if is_centre or last - first <= HUB else first)
+
+
+@kernel
 def two_rings(v, surface, members, marks):
     """Write v, its neighbours and their neighbours to `members`; how many, and the largest squared distance."""
     offsets, neighbours = surface.offsets, surface.neighbours
@@ -121,7 +134,7 @@ def two_rings(v, surface, members, marks):
     for _ in range(2):
         end = n
         for m in range(begin, end):
-            for i in range(offsets[members[m]], offsets[members[m] + 1]):
+            for i in range(*spokes(members[m], m == 0, offsets)):
                 w = neighbours[i]
                 members[n] = w
                 n += marks[w] != v + 1  # without a branch: half of these are new, in no order
@@ -145,7 +158,7 @@ def metric_ball(v, radius, normal, epoch, surface, members, marks):
     marks[v] = epoch
     done, n = 0, 1
     while done < n:
-        for i in range(offsets[members[done]], offsets[members[done] + 1]):
+        for i in range(*spokes(members[done], done == 0, offsets)):
             w = neighbours[i]
             if marks[w] != epoch:
                 marks[w] = epoch
@@ -159,8 +172,12 @@ def metric_ball(v, radius, normal, epoch, surface, members, marks):
 
 
 @kernel
-def local_coordinates(members, n, unit, tangent, normal, vertices, points):
-    """Write to points[i] the tangential coordinates and the height of member i + 1 seen from member 0, over `unit`."""
+def local_coordinates(members, n, unit, normal, vertices, points):
+    """Write to points[i] the tangential coordinates and the height of member i + 1 seen from member 0, over `unit`.
+
+    Returned is the tangent that x is measured along.
+    """
+    tangent = monge.some_tangent(normal)
     (ax, ay, az), (nx, ny, nz) = tangent, normal
     bx, by, bz = monge.cross(normal, tangent)
     v = members[0]
@@ -171,6 +188,8 @@ def local_coordinates(members, n, unit, tangent, normal, vertices, points):
         points[i, 0] = ax * x + ay * y + az * z
         points[i, 1] = bx * x + by * y + bz * z
         points[i, 2] = nx * x + ny * y + nz * z
+    cos, sin = turn_to_long_axis(points, n - 1)
+    return monge.combination(cos, tangent, sin, monge.cross(normal, tangent))
 
 
 @kernel
