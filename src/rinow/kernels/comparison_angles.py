@@ -24,7 +24,7 @@ def decay_and_log_derivative(x, k):
 
 @kernel
 def log_cotangent(s, g, g1, g2, k):
-    """ln cot(angle/2) and its derivative in k, negative; -inf for the angle π, inf for the angle 0."""
+    """Ln cot(angle/2) and its derivative in k, negative; -inf for the angle π, inf for the angle 0."""
     if k * s * s >= FAR:
         exponent = 0.0
         (over1, q1), (over2, q2) = sine_and_log_derivative(s, k), sine_and_log_derivative(g, k)
