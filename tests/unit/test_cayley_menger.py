@@ -159,6 +159,32 @@ def test_wrong_shapes_raise():
         rinow.is_cospherical([[0, 1], [1, 0]])
 
 
+def test_the_determinant_of_a_triangle_is_minus_16_squared_areas():
+    _, D = simplices(3, 2, 50, seed=13)
+    area = [triangles.triangle_area(d[0, 1], d[1, 2], d[2, 0]) for d in D]
+    assert rinow.cayley_menger_determinant(D) == pytest.approx(-16 * np.square(area), rel=1e-12)
+
+
+def test_all_faces_without_a_tetrahedron():
+    D = matrix([1, 1, 1, 1.9, 1.9, 1.9], 4)
+    faces = [np.delete(np.delete(D, i, axis=0), i, axis=1) for i in range(4)]
+    assert rinow.is_euclidean_simplex(faces).all()
+    assert rinow.cayley_menger_determinant(D) < 0
+    assert not rinow.is_euclidean_simplex(D)
+
+
+def test_the_centre_of_the_circumsphere_makes_a_flat_simplex():
+    # D(c, p1 .. p4) = -2 R² D(p1 .. p4) - Δ(p1 .. p4) = 0 for the centre c.
+    for d in simplices(4, 3, 20, seed=14)[1]:
+        radius = rinow.circumradius(d)
+        centred = np.zeros((5, 5))
+        centred[0, 1:] = centred[1:, 0] = radius
+        centred[1:, 1:] = d
+        squares = np.linalg.det(d**2)
+        assert -2 * radius**2 * rinow.cayley_menger_determinant(d) == pytest.approx(squares, rel=1e-9)
+        assert abs(rinow.cayley_menger_determinant(centred)) <= 1e-13 * max(radius, d.max()) ** 8 * 1e3
+
+
 def test_gram_identity():
     # Four points: the bordered determinant is 8 times the Gram determinant of the edges at one of them.
     points, D = simplices(4, 3, 50, seed=9)

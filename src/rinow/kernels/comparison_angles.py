@@ -24,7 +24,7 @@ def decay_and_log_derivative(x, k):
 
 @kernel
 def log_cotangent(s, g, g1, g2, k):
-    """Ln cot(angle/2) and its derivative in k, negative; -inf for the angle π, inf for the angle 0."""
+    """The logarithm of cot(angle/2) and its derivative in k; -inf for the angle π, inf for the angle 0."""
     if k * s * s >= FAR:
         exponent = 0.0
         (over1, q1), (over2, q2) = sine_and_log_derivative(s, k), sine_and_log_derivative(g, k)
@@ -42,7 +42,7 @@ def log_cotangent(s, g, g1, g2, k):
 
 @kernel
 def around(a, b, c):
-    """ln(cot A cot B + cot B cot C + cot C cot A) of half angles, and its derivatives in their logarithms a, b, c.
+    """Value of ln(cot A cot B + cot B cot C + cot C cot A), half angles, and its derivatives in the logarithms a, b, c.
 
     It is 0 where the angles sum to 2π, negative where they exceed that.
     """

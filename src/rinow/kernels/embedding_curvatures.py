@@ -35,7 +35,7 @@ SMALL_STEP = 1e-8
 
 @kernel
 def root(v, o, k_max, low, w, G):
-    """The zero of `balance` in k below k_max - low², by Newton's method in w from the start w > low; nan if none.
+    """The zero of `balance` in k below k_max - low², by Newton's method in w from the start w >= low; nan if none.
 
     There is one if the balance is negative at its upper end, which is tested for low = 0 when a step leads there.
     """

@@ -29,7 +29,7 @@ FIRST_ORDER, SECOND_ORDER = 0.2083, 0.042
 
 @kernel
 def corner(a, b, e, slack):
-    """X = 2ab cos A, y = 16 area², how far each moves by errors in the sides; whether this is a triangle with A < π.
+    """Products 2ab cos A and 16 area², how far each moves by errors in the sides; whether A < π in a triangle.
 
     A is opposite e.  The other sides may exceed the sum of two by slack.
     """
@@ -84,7 +84,9 @@ def enclosure(K, M, error, square, order):
 def robinson(d, order):
     """K or an approximation of higher order, and an interval that holds κ; nan unless q lies between p and r only."""
     a, pr, e, c, b, f = d[0], d[1], d[2], d[3], d[4], d[5]
-    longest = max(pr, e, b, f)
+    longest = max(a, pr, e, c, b, f)
+    if not longest < np.inf:
+        return np.nan, np.nan, np.nan
     slack = METRIC_TRIANGLE_INEQUALITY * longest
     x, xx, dx, dxx, is_corner_p = corner(a, b, e, slack)
     y, yy, dy, dyy, is_corner_r = corner(c, b, f, slack)
@@ -151,10 +153,10 @@ def verified(d, value, lower, upper, G):
     start = value / unit if -np.inf < lower and upper < np.inf else np.nan
     k, slope, error = exact_curvature(start, G, k_max)
     radius = 2.0 * error / abs(slope)
-    if straightness(k - radius, G) > error:
+    if radius < np.inf and straightness(k - radius, G) > error:
         lower = max(lower, (k - radius) * unit)
     if k + radius >= k_max:
-        upper = min(upper, k_max * (1.0 + INPUT_ERROR) * unit)
+        upper = min(upper, k_max * (1.0 + 3.0 * INPUT_ERROR) * unit)
     elif straightness(k + radius, G) < -error:
         upper = min(upper, (k + radius) * unit)
     return min(max(value, lower), upper), lower, upper

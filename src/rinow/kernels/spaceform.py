@@ -93,8 +93,8 @@ def log_sine_derivative(x, k):
 def arc(s, c, k):
     """The x in [0, π/√k] with s_k(x) = s and c_k(x) = c; c is not used for k <= 0."""
     t = math.sqrt(abs(k)) * s
-    if t < 1e-8:
-        return s if k <= 0.0 or c > 0.0 else math.pi / math.sqrt(k)
+    if not t >= 1e-8:
+        return math.pi / math.sqrt(k) if k > 0.0 and c < 0.0 else s
     return s * (math.asinh(t) / t) if k < 0.0 else math.atan2(t, c) / math.sqrt(k)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rinow.kernels._jit import kernel, parallel_kernel, prange
 from rinow.kernels.quadruples import PAIR, other_two
-from rinow.kernels.spaceform import angle, arc, side, sine
+from rinow.kernels.spaceform import angle, arc, is_triangle, side, sine
 
 
 @kernel
@@ -51,10 +51,10 @@ def distances(p, q, k, out):
 
 @kernel
 def place_quadruple(d, k, points):
-    """Write four points with the distances d if there are any; return the error of the worst distance.
+    """Write four points with five of the distances d; return the error of the sixth, inf if a triple has no place.
 
     One point is the origin, another the direction 0, the angles there place the two others; of all such choices,
-    the one with the least error in the sixth distance is kept.  The error is inf if a triple does not fit into S_k.
+    the one with the least error is kept.
     """
     least = np.inf
     for p in range(4):
@@ -62,16 +62,18 @@ def place_quadruple(d, k, points):
             if p == q:
                 continue
             i, j = other_two(p, q)
-            alpha = angle(d[PAIR[q, i]], d[PAIR[p, q]], d[PAIR[p, i]], k)
-            beta = angle(d[PAIR[q, j]], d[PAIR[p, q]], d[PAIR[p, j]], k)
+            pq, pi, pj, qi, qj = d[PAIR[p, q]], d[PAIR[p, i]], d[PAIR[p, j]], d[PAIR[q, i]], d[PAIR[q, j]]
+            if not (is_triangle(pq, pi, qi) and is_triangle(pq, pj, qj)):
+                continue
+            alpha, beta = angle(qi, pq, pi, k), angle(qj, pq, pj, k)
             for turn in (beta, -beta):
-                error = abs(side(d[PAIR[p, i]], d[PAIR[p, j]], abs(alpha - turn), k) - d[PAIR[i, j]])
+                error = abs(side(pi, pj, abs(alpha - turn), k) - d[PAIR[i, j]])
                 if error < least:
                     least = error
                     place(0.0, 0.0, k, points[p])
-                    place(d[PAIR[p, q]], 0.0, k, points[q])
-                    place(d[PAIR[p, i]], alpha, k, points[i])
-                    place(d[PAIR[p, j]], turn, k, points[j])
+                    place(pq, 0.0, k, points[q])
+                    place(pi, alpha, k, points[i])
+                    place(pj, turn, k, points[j])
     return least
 
 

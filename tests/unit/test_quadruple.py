@@ -1,0 +1,319 @@
+"""Embedding curvatures: golden values, known examples, round trips, every relation of linear triples."""
+
+import itertools
+import json
+import math
+from pathlib import Path
+
+import numba
+import numpy as np
+import pytest
+
+import rinow
+from naive import quadruples as naive
+
+EPS = 2.0**-53
+GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "quadruples.json").read_text())["quadruples"]
+DISTANCES = np.array([[float(x) for x in row["distances"].values()] for row in GOLDEN])
+KIND = {"sd": "semidependent"}
+COUNT = {"linear": -1, "not-metric": -2}
+I, J = np.triu_indices(4, 1)
+
+
+def sampled(k, radius, n, seed):
+    """Quadruples of points of S_k in a disk."""
+    surface = rinow.SpaceForm(k)
+    points = surface.sample(4 * n, radius, np.random.default_rng(seed)).reshape(n, 4, 3)
+    return surface.distance(points[:, I], points[:, J])
+
+
+def semidependent(k, n, seed, size=1.0):
+    """Quadruples of S_k in Robinson's order: point 2 on the segment from 1 to 3; and the curvature they have."""
+    rng = np.random.default_rng(seed)
+    a, c, b = size * rng.uniform(0.1, 0.5, (3, n))
+    alpha = rng.uniform(0.1, math.pi - 0.1, n)
+    surface = rinow.SpaceForm(k / size**2)
+    Q = np.stack([a, a + c, surface.side(a, b, alpha), c, b, surface.side(c, b, math.pi - alpha)], axis=1)
+    return Q, k / size**2
+
+
+def test_golden_counts_and_kinds():
+    result = rinow.embedding_curvatures(DISTANCES)
+    expected = [COUNT.get(row["status"], len(row["embedding_curvatures"])) for row in GOLDEN]
+    assert result.count.tolist() == expected
+    for kinds, row in zip(result.kind.tolist(), GOLDEN, strict=True):
+        assert [k for k in kinds if k] == [KIND.get(t, t) for t in row["types"]]
+    assert (np.isnan(result.values) == (result.kind == "")).all()
+    assert (np.isnan(result.condition) == (result.kind == "")).all()
+
+
+def test_golden_values():
+    values = rinow.embedding_curvatures(DISTANCES).values
+    errors = []
+    for d, v, row in zip(DISTANCES, values, GOLDEN, strict=True):
+        for actual, text in zip(v, row["embedding_curvatures"], strict=False):
+            unit = EPS * max(abs(float(text)), 1 / d.max() ** 2)
+            errors.append(abs(actual - float(text)) / unit)
+    # Rounding the decimals to float64 alone gives a median of 15 units and a maximum of 3.9e4, near linear triples.
+    assert len(errors) == 185
+    assert np.median(errors) <= 50
+    assert max(errors) <= 4e4
+
+
+def test_golden_semidependent_and_linear_flags():
+    assert rinow.is_semidependent(DISTANCES).tolist() == [row["is_sd"] for row in GOLDEN]
+    assert rinow.is_linear(DISTANCES).tolist() == [row["status"] == "linear" for row in GOLDEN]
+    for order, row in zip(rinow.semidependent_order(DISTANCES).tolist(), GOLDEN, strict=True):
+        triples = [[i - 1, m - 1, k - 1] for i, m, k in row["sd_triples"]]
+        if row["is_sd"]:
+            assert order[:3] in triples or order[2::-1] in triples
+            assert sorted(order) == [0, 1, 2, 3]
+        else:
+            assert order == [-1] * 4
+
+
+@pytest.mark.parametrize(
+    ("distances", "values", "kinds"),
+    [
+        ([1, 2**0.5, 1, 1, 2**0.5, 1], [0, 2.89244794846], ["nonplanar", "planar"]),
+        ([math.pi / 2] * 6, [1.47949977126], ["planar"]),
+        (
+            [2, 1.27455578231, 1.00434286546, 1.27455578231, 1.00434286546, 0.883546741918],
+            [0, 1],
+            ["nonplanar", "planar"],
+        ),
+        ([1.5, 1, 1, 1, 1, 1.5], [math.pi**2 / 9, 0.282315492194 * math.pi**2], ["nonplanar", "planar"]),
+        ([1, 1, 1, 2, 2, 2], [], []),
+        ([1, 3, 2, 2, 3, 1], [(math.pi / 3) ** 2], ["boundary"]),
+        ([1, 2, 0.8, 1, 0.9, 1.2], [(math.pi / 2) ** 2], ["boundary"]),
+        ([2, 5, 5, 5, 5, 2], [0.242132641502], ["planar"]),
+    ],
+)
+def test_examples(distances, values, kinds):
+    result = rinow.embedding_curvatures(distances)
+    assert result.count == len(values)
+    assert result.values[: len(values)] == pytest.approx(values, rel=1e-9, abs=1e-9)
+    assert [k for k in result.kind if k] == kinds
+
+
+def test_agrees_with_the_zeros_of_the_gram_determinant():
+    Q = np.random.default_rng(21).uniform(1, 2, (20, 6))
+    result = rinow.embedding_curvatures(Q)
+    assert (result.count == 2).all()
+    for d, values, condition in zip(Q, result.values, result.condition, strict=True):
+        expected = naive.embedding_curvatures(d, lowest=-30.0)
+        assert len(expected) == np.count_nonzero(values > -30)
+        # Terms of the determinant cancel: at k = -30 they are 1e6 times as large as it is nearby.
+        expected = pytest.approx(expected, abs=1e6 * EPS * condition.max())
+        assert values[values > -30] == expected
+
+
+@pytest.mark.parametrize("k", [-100.0, -1.0, -1e-6, 0.0, 1e-6, 1.0, 100.0])
+@pytest.mark.parametrize("radius", [5e-4, 0.15])
+def test_the_curvature_of_sampled_points_is_found(k, radius):
+    Q = sampled(k, radius, 3000, seed=22)
+    result = rinow.embedding_curvatures(Q)
+    diameter = Q.max(axis=1)
+    error = np.abs(result.values - k)
+    nearest = np.nanargmin(error, axis=1)[:, None]
+    # Six distances, each wrong by a few eps: the sum of their effects is below 6 · 4 · condition · eps / diameter².
+    allowed = 24 * EPS * (np.take_along_axis(result.condition, nearest, 1)[:, 0] / diameter**2 + abs(k))
+    assert (np.nanmin(error, axis=1) <= allowed).all()
+    assert (result.count == 2).all()
+
+
+@pytest.mark.parametrize("k", [-9.0, -1.0, 0.0, 1.0, 4.0])
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e5])
+def test_quadruples_with_a_linear_triple_have_one_value(k, size):
+    Q, expected = semidependent(k, 300, seed=23, size=size)
+    result = rinow.embedding_curvatures(Q)
+    assert (result.count == 1).all()
+    assert (result.kind[:, 0] == "semidependent").all()
+    allowed = 24 * EPS * (result.condition[:, 0] / Q.max(axis=1) ** 2 + abs(expected))
+    assert (np.abs(result.values[:, 0] - expected) <= allowed).all()
+    assert rinow.semidependent_order(Q).tolist() == [[0, 1, 2, 3]] * len(Q)
+
+
+def test_two_values_approach_each_other_near_a_linear_triple():
+    # p1 = (-1, 0), p3 = (1, 0), p4 = (0, 1), p2 = (0, h): in the plane, and at -0.12445, -0.012043 for h = 0.01, 0.001.
+    for h, other in ((1e-2, -0.12445), (1e-3, -0.012043)):
+        side = math.hypot(1, h)
+        result = rinow.embedding_curvatures([side, 2, 2**0.5, side, 1 - h, 2**0.5])
+        assert result.values == pytest.approx([other, 0], rel=1e-3, abs=1e-12)
+
+
+def test_labels_do_not_matter():
+    Q = np.concatenate([DISTANCES, sampled(-1.0, 0.5, 50, seed=24)])
+    expected = rinow.embedding_curvatures(Q)
+    D = np.zeros((len(Q), 4, 4))
+    D[:, I, J] = D[:, J, I] = Q
+    for order in itertools.permutations(range(4)):
+        actual = rinow.embedding_curvatures(D[:, order][:, :, order][:, I, J])
+        assert (actual.count == expected.count).all()
+        assert (actual.kind == expected.kind).all()
+        scale = Q.max(axis=1)[:, None] ** 2
+        allowed = 20 * EPS * (expected.condition / scale + np.abs(expected.values))
+        assert (np.abs(actual.values - expected.values) <= allowed)[expected.kind != ""].all()
+
+
+def test_scaling_by_powers_of_two_is_exact():
+    expected = rinow.embedding_curvatures(DISTANCES)
+    for exponent in (-200, -3, 100):
+        actual = rinow.embedding_curvatures(np.ldexp(DISTANCES, exponent))
+        assert np.array_equal(actual.values, np.ldexp(expected.values, -2 * exponent), equal_nan=True)
+        assert np.array_equal(actual.condition, expected.condition, equal_nan=True)
+
+
+def test_condition_is_the_largest_derivative():
+    Q = np.concatenate([sampled(1.0, 0.7, 40, seed=25), sampled(-4.0, 0.7, 40, seed=26)])
+    result = rinow.embedding_curvatures(Q)
+    h = 1e-7
+    slopes = []
+    for column in range(6):
+        moved = [rinow.embedding_curvatures(Q + sign * h * np.eye(6)[column]).values for sign in (1, -1)]
+        slopes.append((moved[0] - moved[1]) / (2 * h))
+    slopes = np.array(slopes)
+    expected = np.abs(slopes).max(axis=0) * Q.max(axis=1)[:, None] ** 3
+    mild = result.condition < 1e3  # central differences err by h² times a power of the condition
+    assert mild.mean() > 0.5
+    assert result.condition[mild] == pytest.approx(expected[mild], rel=1e-3)
+    # A value scales with the inverse square of the distances: Euler's identity.
+    euler = (slopes * Q.T[:, :, None]).sum(axis=0)
+    assert euler[mild] == pytest.approx(-2 * result.values[mild], rel=1e-3, abs=1e-4)
+
+
+def test_relations_of_linear_triples():
+    rows = {
+        "line": [1, 2, 3, 1, 2, 1],
+        "line in another order": [2, 1, 1, 1, 3, 2],
+        "circle": [1, 3, 2, 2, 3, 1],
+        "tripod": [1, 1, 1, 2, 2, 2],
+        "branch": [1, 1, 1, 2, 2, 1.5],
+        "two points coincide": [0, 1, 1, 1, 1, 1.5],
+        "one point": [0] * 6,
+        "two pairs": [0, 1, 1, 1, 1, 0],
+        "generic": [1, 1.1, 1.2, 1.3, 1.4, 1.7],
+        "great circle of three": [2, 2, 1, 2, 1.1, 1.5],
+    }
+    result = rinow.embedding_curvatures(list(rows.values()))
+    assert dict(zip(rows, result.count.tolist(), strict=True)) == {
+        "line": -1,
+        "line in another order": -1,
+        "circle": 1,
+        "tripod": 0,
+        "branch": 0,
+        "two points coincide": -1,
+        "one point": -1,
+        "two pairs": -1,
+        "generic": 2,
+        "great circle of three": 2,
+    }
+    is_linear = dict(zip(rows, rinow.is_linear(list(rows.values())).tolist(), strict=True))
+    assert [name for name, flag in is_linear.items() if flag] == [
+        "line",
+        "line in another order",
+        "one point",
+        "two pairs",
+    ]
+    is_semidependent = dict(zip(rows, rinow.is_semidependent(list(rows.values())).tolist(), strict=True))
+    assert [name for name, flag in is_semidependent.items() if flag] == ["circle", "tripod", "branch"]
+
+
+def test_trees_have_one_value():
+    rng = np.random.default_rng(27)
+    leaf, middle = rng.uniform(0.1, 1, (200, 4)), rng.uniform(0, 1, 200)
+    Q = leaf[:, I] + leaf[:, J] + middle[:, None] * ((I < 2) != (J < 2))
+    result = rinow.embedding_curvatures(Q)
+    assert (result.count == 1).all()
+    assert (result.kind[:, 0] == "planar").all()
+    # A share of 1e-9 more of the largest sum brings the second value back, far below.
+    Q[:, 1] *= 1 + 1e-9
+    result = rinow.embedding_curvatures(Q)
+    assert (result.count == 2).all()
+    assert (result.values[:, 0] < -10 / Q.max(axis=1) ** 2).all()
+
+
+def test_three_points_on_a_great_circle():
+    # The equator in three equal parts, and points at latitude h: at a pole they are at distance π/2 from all three.
+    sphere = rinow.SpaceForm(1.0)
+    third = 2 * math.pi / 3
+    for h in (0.0, 0.4, 1.0, math.pi / 2):
+        far = sphere.side(math.pi / 2 - h, math.pi / 2, [0.3, third - 0.3, third + 0.3])
+        result = rinow.embedding_curvatures([third, third, far[0], third, far[1], far[2]])
+        last = result.values[result.count - 1]
+        assert last == pytest.approx(1, rel=1e-12)
+        assert result.kind[result.count - 1] == "boundary"
+
+
+def test_a_bad_row_is_marked_and_leaves_the_others():
+    good = [1.0, 1.1, 1.2, 1.3, 1.4, 1.7]
+    rows = [good, [np.nan, *good[1:]], [np.inf, *good[1:]], [-1.0, *good[1:]], [5.0, *good[1:]], good]
+    result = rinow.embedding_curvatures(rows)
+    assert result.count.tolist() == [2, -2, -2, -2, -2, 2]
+    assert np.isnan(result.values[1:5]).all()
+    assert (result.kind[1:5] == "").all()
+    assert np.array_equal(result.values[0], result.values[5])
+    assert rinow.is_linear(rows).tolist() == rinow.is_semidependent(rows).tolist() == [False] * 6
+    # The triangle inequality may fail by 1e-9 of the diameter.
+    assert rinow.embedding_curvatures([1 + 5e-10, 0.5, 0.8, 0.5, 0.8, 0.9]).count == 1
+    assert rinow.embedding_curvatures([1 + 5e-9, 0.5, 0.8, 0.5, 0.8, 0.9]).count == -2
+
+
+def test_shapes_of_the_result():
+    result = rinow.embedding_curvatures(np.ones((2, 3, 6)))
+    shapes = (result.values.shape, result.count.shape, result.kind.shape, result.condition.shape)
+    assert shapes == ((2, 3, 2), (2, 3), (2, 3, 2), (2, 3, 2))
+    assert rinow.embedding_curvatures(np.ones((0, 6))).values.shape == (0, 2)
+    assert rinow.semidependent_order(np.ones((2, 3, 6))).shape == (2, 3, 4)
+    functions = (rinow.embedding_curvatures, rinow.is_linear, rinow.is_semidependent, rinow.semidependent_order)
+    for function in functions:
+        for bad in ([1, 2, 3], np.ones((6, 2)), 1.0, ["a"] * 6):
+            with pytest.raises(rinow.InvalidInputError, match="quadruples"):
+                function(bad)
+    with pytest.raises(rinow.InvalidInputError, match="fit"):
+        rinow.is_planar(np.ones((2, 6)), [1.0, 2.0, 3.0])
+
+
+def test_planarity_of_every_value():
+    result = rinow.embedding_curvatures(DISTANCES)
+    for m in range(2):
+        has = (result.kind[:, m] != "") & (result.kind[:, m] != "boundary")
+        planar = rinow.is_planar(DISTANCES[has], result.values[has, m])
+        assert (planar == (result.kind[has, m] != "nonplanar")).all()
+    square = [1, 2**0.5, 1, 1, 2**0.5, 1]
+    assert rinow.is_planar(square, 2.892447948459)
+    assert not rinow.is_planar(square, [-1.0, 0.0, 2.8, 3.0, 100.0]).any()
+    assert not rinow.is_planar([0, 1, 1, 1, 1, 1.5], 0.0)
+    assert not rinow.is_planar([np.nan] * 6, 0.0)
+    assert rinow.is_planar([1, 2, 3, 1, 2, 1], 0.5)
+
+
+def test_planar_quadruples_have_an_angle_sum_of_a_full_turn():
+    Q = sampled(0.5, 1.0, 200, seed=28)
+    result = rinow.embedding_curvatures(Q)
+    for d, values in zip(Q, result.values, strict=True):
+        # The naive angles lose half of the digits near 0 and π.
+        assert max(naive.angle_sums(d, values[1])) == pytest.approx(2 * math.pi, abs=1e-6)
+        assert max(naive.angle_sums(d, values[0])) < 2 * math.pi + 1e-6
+
+
+def test_every_value_embeds():
+    result = rinow.embedding_curvatures(DISTANCES)
+    for d, values in zip(DISTANCES, result.values, strict=True):
+        for k in values[np.isfinite(values)]:
+            surface = rinow.SpaceForm(k)
+            points = surface.embed(d)
+            # The sixth distance follows from five: the error of k times its effect, 1e-13 at most in these rows.
+            assert np.abs(surface.distance(points[I], points[J]) - d).max() <= 1e-12 * d.max()
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT or numba.config.NUMBA_NUM_THREADS < 2, reason="needs two threads")
+def test_one_and_two_threads_give_the_same_bits():
+    Q = sampled(1.0, 0.5, 1000, seed=29)
+    results = []
+    for n_threads in (1, 2):
+        numba.set_num_threads(n_threads)
+        results.append(rinow.embedding_curvatures(Q))
+    numba.set_num_threads(numba.config.NUMBA_NUM_THREADS)
+    assert np.array_equal(results[0].values, results[1].values)
+    assert np.array_equal(results[0].condition, results[1].condition)
