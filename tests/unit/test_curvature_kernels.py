@@ -137,7 +137,7 @@ def test_quadric_equals_orthogonalised_least_squares():
 
 def fit_balls(mesh):
     surface, radii = stencil_surface(mesh), 4.0 * local_spacing(mesh)
-    frames, spread = empty_frames(mesh.n_vertices), np.full(mesh.n_vertices, np.nan)
+    frames, spread = empty_frames(mesh.n_vertices), np.empty(mesh.n_vertices)
     jets.ball_jets(0, mesh.n_vertices, radii, 4, surface, 4, frames, spread)
     tilt = np.einsum("ij,ij->i", surface.normals, frames.normals)
     once = tilt**-2 - 1 < jets.STEEP  # the others are fitted a second time, over a plane of their own
@@ -215,7 +215,6 @@ def test_lifted_metric_has_the_total_curvature_of_the_surface():
     for name, shape in shapes.closed_shapes().items():
         mesh = TriangleMesh(shape.vertices, shape.faces)
         surface, frames = stencil_surface(mesh), empty_frames(mesh.n_vertices)
-        frames.normals[:] = surface.normals
         quadrics.ring_quadrics(surface, 4, frames)
         lengths = np.empty((mesh.n_faces, 3))
         curves.lifted_edge_lengths(mesh.vertices, mesh.faces, frames.normals, mesh.edge_lengths, lengths)

@@ -85,6 +85,6 @@ def sectional(
 def _jets(surface: stencils.Surface, radii: Floats, start: int) -> tuple[monge.PrincipalFrames, Floats]:
     """Principal frames and standard errors of one task."""
     stop = min(start + VERTICES_PER_TASK, len(radii))
-    frames, spread = empty_frames(stop - start), np.full(stop - start, np.nan)
+    frames, spread = empty_frames(stop - start), np.empty(stop - start)
     jets.ball_jets(start, stop, radii, jets.MAX_ORDER, surface, N_BLOCKS, frames, spread)
     return frames, spread

@@ -59,7 +59,7 @@ def vertex_status(mesh: TriangleMesh | IntrinsicMesh) -> NDArray[np.uint8]:
     status[topology.vertex_is_boundary] = VertexStatus.BOUNDARY
     status[~topology.vertex_is_manifold] = VertexStatus.NONMANIFOLD
     proper = np.empty(mesh.n_vertices, np.bool_)
-    stars.proper_stars(mesh.edge_lengths, mesh.face_areas, topology.corner_offsets, topology.vertex_corners, proper)
+    stars.proper_stars(mesh.edge_lengths, topology.corner_offsets, topology.vertex_corners, proper)
     status[~proper] = VertexStatus.DEGENERATE
     status[~(topology.vertex_is_used | _in_face_with_repeated_vertex(mesh))] = VertexStatus.ISOLATED
     if isinstance(mesh, TriangleMesh):
@@ -71,5 +71,6 @@ def _in_face_with_repeated_vertex(mesh: TriangleMesh | IntrinsicMesh) -> NDArray
     """(n_vertices,): some face has the vertex, but takes no part since one of its vertices is there twice."""
     touched = np.zeros(mesh.n_vertices, np.bool_)
     left_out = np.flatnonzero(~mesh.topology.face_used)
-    touched[mesh.faces[left_out[np.isfinite(mesh.face_areas[left_out])]].ravel()] = True
+    finite = np.isfinite(mesh.edge_lengths[left_out]).all(axis=1)
+    touched[mesh.faces[left_out[finite]].ravel()] = True
     return touched

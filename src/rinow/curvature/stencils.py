@@ -50,8 +50,8 @@ def local_spacing(mesh: TriangleMesh) -> NDArray[np.float64]:
 
 
 def empty_frames(n: int) -> monge.PrincipalFrames:
-    """Principal frames of n vertices, all nan."""
-    return monge.PrincipalFrames(np.full(n, np.nan), np.full(n, np.nan), *(np.full((n, 3), np.nan) for _ in range(3)))
+    """Room for the principal frames of n vertices."""
+    return monge.PrincipalFrames(np.empty(n), np.empty(n), np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)))
 
 
 def _ring_sums(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from rinow.kernels import monge, stencils
 from rinow.kernels._jit import kernel, parallel_kernel, prange
-from rinow.kernels.stencils import PIVOT, QUADRIC_POINTS, SOFTENING
+from rinow.kernels.stencils import QUADRIC_POINTS, SOFTENING
 
 MAX_ORDER = 4
 WIDTH = 2 * MAX_ORDER + 1
@@ -21,6 +21,9 @@ X_POWERS = np.array([1, 0, 2, 1, 0, 3, 2, 1, 0, 4, 3, 2, 1, 0])
 Y_POWERS = np.array([0, 1, 0, 1, 2, 0, 1, 2, 3, 0, 1, 2, 3, 4])
 SPARE = 1.25
 """Points for each unknown that an order needs."""
+PIVOT = 5e-4
+"""A monomial depends on the earlier ones when this share of its norm is left: far more than rounding leaves, for
+a fit that nearly interpolates is precise and wrong."""
 STEEP = 0.1
 """Squared slope of the fitted surface from which its own tangent plane is the better one to fit over."""
 
@@ -188,8 +191,11 @@ def fit_ball(v, radius, order, surface, work):
 
     Where the surface turns out steep over the first tangent plane, the fit is made again over its own.
     """
-    normal = (surface.normals[v, 0], surface.normals[v, 1], surface.normals[v, 2])
-    c = work.coefficients
+    first = last = n = 0
+    residual, c = 0.0, work.coefficients
+    normal = tangent = stencils.normal_at(v, surface)
+    if normal == (0.0, 0.0, 0.0):
+        return first, last, residual, n, tangent, normal
     for attempt in range(2):
         n = stencils.metric_ball(v, radius, normal, 2 * v + attempt + 1, surface, work.members, work.marks)
         tangent = stencils.local_coordinates(work.members, n, radius, normal, surface.vertices, work.points)
@@ -202,12 +208,15 @@ def fit_ball(v, radius, order, surface, work):
 
 @parallel_kernel
 def ball_jets(start, stop, radii, order, surface, n_blocks, frames, spread):
-    """Write frames and standard errors of vertices start..stop - 1, from metric balls; without a fit none."""
+    """Write frames and standard errors of vertices start..stop - 1, from metric balls; nan without a fit."""
     for block in prange(n_blocks):
         work = scratch(surface.vertices.shape[0])
         for v in range(start + (stop - start) * block // n_blocks, start + (stop - start) * (block + 1) // n_blocks):
-            if not (surface.normals[v, 0] == surface.normals[v, 1] == surface.normals[v, 2] == 0.0):
-                first, last, residual, n, tangent, normal = fit_ball(v, radii[v], order, surface, work)
-                if last > 0:
-                    monge.write_principal_frame(v - start, work.coefficients, radii[v], tangent, normal, frames)
-                    spread[v - start] = standard_error(residual, n, first, last, work) / radii[v] ** 2
+            row = v - start
+            spread[row] = np.nan
+            first, last, residual, n, tangent, normal = fit_ball(v, radii[v], order, surface, work)
+            if last > 0:
+                monge.write_principal_frame(row, work.coefficients, radii[v], tangent, normal, frames)
+                spread[row] = standard_error(residual, n, first, last, work) / radii[v] ** 2
+            else:
+                monge.write_no_frame(row, normal, frames)

@@ -78,3 +78,12 @@ def write_principal_frame(row, coefficients, unit, tangent, normal, frames):
     p, q = combination(cos, t, sin, b), combination(cos, b, -sin, t)
     for k in range(3):
         frames.direction1[row, k], frames.direction2[row, k], frames.normals[row, k] = p[k], q[k], n[k]
+
+
+@kernel
+def write_no_frame(row, normal, frames):
+    """Write nan for a vertex without a fit, and its normal."""
+    frames.k1[row] = frames.k2[row] = np.nan
+    for k in range(3):
+        frames.direction1[row, k] = frames.direction2[row, k] = np.nan
+        frames.normals[row, k] = normal[k]

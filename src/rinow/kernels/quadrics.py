@@ -10,7 +10,11 @@ import numpy as np
 
 from rinow.kernels import monge, stencils
 from rinow.kernels._jit import kernel, parallel_kernel, prange
-from rinow.kernels.stencils import PIVOT, QUADRIC_POINTS, SOFTENING
+from rinow.kernels.stencils import QUADRIC_POINTS, SOFTENING
+
+PIVOT = 1e-6
+"""A term depends on the earlier ones when this share of its norm is left.  Where all points lie near two lines the
+product x y is barely determined, but neither the normal nor the mean curvature need it."""
 
 
 @kernel
@@ -32,12 +36,17 @@ def quadric_moments(points, n):
 
 @kernel
 def solve_three(a, b, c, d, e, f, x, y, z):
-    """Solution of the symmetric positive system ((a, b, c), (b, d, e), (c, e, f)), and its pivots."""
+    """Solution of the symmetric system ((a, b, c), (b, d, e), (c, e, f)) and its last pivots; 0 if one is not > 0."""
+    if not a > 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     l1, l2 = b / a, c / a
-    p = d - l1 * b
-    q = e - l1 * c
+    p, q = d - l1 * b, e - l1 * c
+    if not p > 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     l3 = q / p
     r = f - l2 * c - l3 * q
+    if not r > 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     y -= l1 * x
     w = (z - l2 * x - l3 * y) / r
     v = y / p - l3 * w
@@ -82,16 +91,19 @@ def fit_quadric(points, n, coefficients):
 
 @parallel_kernel
 def ring_quadrics(surface, n_blocks, frames):
-    """Write the principal frames of the quadrics fitted to the two rings; rows without one stay as they are."""
+    """Write the principal frames of the quadrics fitted to the two rings; nan, and the given normal, without one."""
     n_vertices = surface.vertices.shape[0]
     for block in prange(n_blocks):
         members, marks = np.empty(n_vertices + 1, np.int32), np.zeros(n_vertices, np.int32)
         points, coefficients = np.empty((n_vertices, 3)), np.empty(5)
         for v in range(n_vertices * block // n_blocks, n_vertices * (block + 1) // n_blocks):
             n, reach = stencils.two_rings(v, surface, members, marks)
-            normal = (surface.normals[v, 0], surface.normals[v, 1], surface.normals[v, 2])
-            if reach > 0.0 and normal != (0.0, 0.0, 0.0):
-                unit = math.sqrt(reach)
+            normal, unit = stencils.normal_at(v, surface), math.sqrt(reach)
+            fitted, tangent = False, normal
+            if unit > 0.0 and normal != (0.0, 0.0, 0.0):
                 tangent = stencils.local_coordinates(members, n, unit, normal, surface.vertices, points)
-                if fit_quadric(points, n - 1, coefficients):
-                    monge.write_principal_frame(v, coefficients, unit, tangent, normal, frames)
+                fitted = fit_quadric(points, n - 1, coefficients)
+            if fitted:
+                monge.write_principal_frame(v, coefficients, unit, tangent, normal, frames)
+            else:
+                monge.write_no_frame(v, normal, frames)

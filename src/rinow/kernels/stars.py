@@ -6,6 +6,7 @@ import numpy as np
 
 from rinow.kernels._jit import kernel, parallel_kernel, prange
 from rinow.kernels.spaceform import angle_and_derivative, is_triangle
+from rinow.kernels.triangles import triangle_area
 from rinow.tolerances import DEGENERATE_AREA
 
 FULL_TURN = 2.0 * math.pi
@@ -107,14 +108,16 @@ def vertex_star_curvatures(edge_lengths, offsets, corners, is_closed, n_blocks, 
 
 
 @parallel_kernel
-def proper_stars(edge_lengths, areas, offsets, corners, out):
+def proper_stars(edge_lengths, offsets, corners, out):
     """Write whether some face at each vertex is not degenerate."""
     for v in prange(offsets.shape[0] - 1):
         out[v] = False
         for i in range(offsets[v], offsets[v + 1]):
             f = corners[i] // 3
-            longest = max(edge_lengths[f, 0], edge_lengths[f, 1], edge_lengths[f, 2])
-            out[v] |= areas[f] > DEGENERATE_AREA * longest * longest
+            a, b, c = edge_lengths[f, 0], edge_lengths[f, 1], edge_lengths[f, 2]
+            if triangle_area(a, b, c) > DEGENERATE_AREA * max(a, b, c) ** 2:
+                out[v] = True
+                break
 
 
 @parallel_kernel

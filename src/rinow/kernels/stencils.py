@@ -18,9 +18,6 @@ QUADRIC_POINTS = 7
 HUB = 100
 """A vertex with more neighbours than this, such as the centre of a fan, joins the vertices around it to far too many:
 stencils of others do not grow through it, or their total cost would be the square of its degree."""
-PIVOT = 5e-4
-"""A monomial depends on the earlier ones when this share of its norm is left: far more than rounding leaves, for
-a fit that nearly interpolates is precise and wrong."""
 CANCELLED = 0.1
 """A sum of vectors shorter than this share of the first one has no direction of its own."""
 TINY = 1e-300
@@ -108,6 +105,12 @@ def mean_edge_lengths(vertices, offsets, neighbours, out):
         for i in range(offsets[v], offsets[v + 1]):
             total += math.sqrt(squared_distance(vertices, v, neighbours[i]))
         out[v] = total / max(offsets[v + 1] - offsets[v], 1)
+
+
+@kernel
+def normal_at(v, surface):
+    """The normal at a vertex."""
+    return surface.normals[v, 0], surface.normals[v, 1], surface.normals[v, 2]
 
 
 @kernel
