@@ -14,7 +14,9 @@ _HOME = {
     "ConvergenceError": "errors",
     "CurvatureFit": "embedding.point_set",
     "EmbeddingCurvatures": "embedding.quadruple",
+    "ExactGeodesics": "geodesics.exact",
     "FileFormatError": "errors",
+    "GeodesicBalls": "geodesics.exact",
     "IntrinsicMesh": "mesh",
     "InvalidInputError": "errors",
     "InvalidMeshError": "errors",
@@ -48,6 +50,8 @@ _HOME = {
     "robinson_curvature": "embedding.semidependent",
     "semidependent_order": "embedding.semidependent",
     "star_curvature": "embedding.star",
+    "geodesic_distances": "geodesics.distances",
+    "geodesic_space": "geodesics.distances",
 }
 
 __all__ = ["__version__", *sorted(_HOME)]  # pyright: ignore[reportUnsupportedDunderAll]
