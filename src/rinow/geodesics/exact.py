@@ -176,7 +176,7 @@ class ExactGeodesics:
         """Offsets, vertices, distances and directions; the ball of a source without a position is empty."""
         is_defined = ~undefined_vertices(self.mesh)[sources]
         asked = sources[is_defined], radii[is_defined]
-        offsets, *columns = ball_rows(self._unfolded, *asked, with_directions=with_directions)
+        offsets, vertices, distances, directions = ball_rows(self._unfolded, *asked, with_directions=with_directions)
         counts = np.zeros(len(sources), np.intp)
         counts[is_defined] = np.diff(offsets)
-        return np.concatenate([[0], np.cumsum(counts)]), *columns
+        return np.concatenate([[0], np.cumsum(counts)]), vertices, distances, directions

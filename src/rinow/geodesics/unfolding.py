@@ -105,7 +105,8 @@ def _shapes_from_lengths(lengths: Floats, angles: Floats) -> Shapes:
     opposite = np.maximum(lengths, tolerances.ZERO_EDGE)
     ab, ca, bc = opposite[:, [2, 0, 1]], opposite[:, [1, 2, 0]], opposite
     A, B = angles, angles[:, [1, 2, 0]]
-    return np.stack([ca / ab * np.exp(1j * A), -bc / ab * np.exp(-1j * B)], axis=-1).reshape(-1, 2)
+    shapes = np.stack([ca / ab * np.exp(1j * A), -bc / ab * np.exp(-1j * B)], axis=-1)
+    return shapes.reshape(-1, 2).astype(np.complex128)
 
 
 def _halfedges(topology: Topology, shapes: Shapes, *, two_sided: bool) -> Records:
@@ -165,7 +166,7 @@ def _fork(topology: Topology, across: Indices) -> tuple[Indices, Indices]:
 def _surface(topology: Topology, halfedges: Records, lengths: Floats, component_sizes: Indices) -> Surface:
     """Fans, kinds of vertices and the width of a shell."""
     n = topology.faces.size
-    z = halfedges["from_start"][:n]
+    z: Shapes = halfedges["from_start"][:n]
     is_manifold = topology.vertex_is_manifold
     corners, vertices = np.zeros(n, fans.FAN), np.zeros(topology.n_vertices, fans.VERTEX)
     fans.order_fans(
