@@ -1,7 +1,7 @@
 """Shortest paths on any complex of triangles: all straight segments between vertices, then Floyd and Warshall.
 
-A shortest path is a chain of straight segments between vertices, each through a strip of different faces.  All strips are
-laid out in the plane by their side lengths; no segment is left out for being long, no wedge for being in the light.
+A shortest path is a chain of straight segments between vertices, each through a strip of different faces.  All strips
+are laid out in the plane by their side lengths; no segment is left out for being long, no wedge for being in the light.
 """
 
 import math
