@@ -133,6 +133,8 @@ class ExactGeodesics:
 
         Raises
         ------
+        InvalidMeshError
+            If the paths branch too often to be followed, between many sheets at edges of three or more faces.
         InvalidInputError
             If `sources` is not a list of vertices, or `max_distance` is negative, nan or of another length.
         """
@@ -161,6 +163,8 @@ class ExactGeodesics:
 
         Raises
         ------
+        InvalidMeshError
+            If the paths branch too often to be followed, between many sheets at edges of three or more faces.
         InvalidInputError
             If `sources` is not a list of vertices, or `max_distance` is negative, nan or of another length.
         """
