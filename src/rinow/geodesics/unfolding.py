@@ -182,7 +182,7 @@ def _surface(topology: Topology, halfedges: Records, lengths: Floats, component_
     corners, vertices = np.zeros(n, fans.FAN), np.zeros(topology.n_vertices, fans.VERTEX)
     fans.order_fans(topology.corner_offsets, topology.vertex_corners, is_manifold, angles, halfedges, corners, vertices)
     row = corners["row"]
-    sides = lengths[:, [2, 0, 1]].ravel()
+    sides = np.maximum(lengths, tolerances.ZERO_EDGE)[:, [2, 0, 1]].ravel()
     corners["first_length"], corners["last_length"] = sides[row % n], sides[halfedges["previous"][row] % n]
     fans.write_clearances(halfedges, corners, vertices)
     vertices["component_size"] = component_sizes
