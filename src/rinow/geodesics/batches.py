@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rinow.errors import InvalidMeshError
 from rinow.geodesics.unfolding import UnfoldedMesh
 from rinow.kernels import geodesic_rows
-from rinow.kernels.geodesics import new_balls
+from rinow.kernels.geodesic_balls import new_balls
 
 __all__ = ["ball_rows", "distance_rows"]
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow import tolerances
-from rinow.kernels import adjacency, fans, patches, unfolding
-from rinow.kernels.geodesics import Surface
+from rinow.kernels import adjacency, fans, patch_order, unfolding
+from rinow.kernels.geodesic_balls import Surface
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 from rinow.topology import Topology
 
@@ -56,7 +56,7 @@ def unfold(mesh: TriangleMesh | IntrinsicMesh) -> UnfoldedMesh:
     half-edges come twice, the second time seen from behind.
     """
     t = _without_repeated_faces(mesh.topology)
-    order = patches.patch_order(t.neighbour_offsets, t.neighbours, _PATCH_SIZE)
+    order = patch_order.patch_order(t.neighbour_offsets, t.neighbours, _PATCH_SIZE)
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     corners = _oriented_corners(t.face_flips)

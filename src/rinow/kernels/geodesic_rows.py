@@ -1,7 +1,8 @@
 """Geodesic balls of many sources, as rows of varying length or as full rows of distances."""
 
 from rinow.kernels._jit import kernel, parallel_kernel, prange
-from rinow.kernels.geodesics import N_REACHED, ball_of_row, direction, empty_ball, fill_ball, waiting_of_row
+from rinow.kernels.geodesic_balls import N_REACHED, ball_of_row, direction, empty_ball, waiting_of_row
+from rinow.kernels.geodesics import fill_ball
 
 DONE, NO_ROOM, NO_SPACE = range(3)
 """Status of a source: done, too many windows waited, its part of the output is full."""
