@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import floyd_warshall
 import rinow
 import shapes
 from rinow.errors import InvalidInputError, InvalidMeshError, MissingDependencyError
+from rinow.geodesics import batches
 from rinow.geodesics.exact import ExactGeodesics
 
 EXACT = 1e-13  # rounding of some dozens of additions
@@ -281,6 +282,18 @@ def test_bad_spaces():
         rinow.geodesic_space(two)
     with pytest.raises(InvalidInputError, match=re.escape("indices has shape (0,); give one list of at least one")):
         rinow.geodesic_space(two, np.empty(0, int))
+
+
+def test_room_for_windows_grows_and_has_an_end(monkeypatch):
+    V, F = shapes.icosphere(2)[:2]
+    expected = ExactGeodesics((V, F)).distances([0, 5])
+    monkeypatch.setattr(batches, "_ROOM", (16, 0))
+    np.testing.assert_array_equal(ExactGeodesics((V, F)).distances([0, 5]), expected)
+    monkeypatch.setattr(batches, "_ROOM_AT_MOST", 1)
+    with pytest.raises(InvalidMeshError, match="geodesics from vertex 0 branch too often"):
+        ExactGeodesics((V, F)).distances([0, 5])
+    with pytest.raises(InvalidMeshError, match="branch too often"):
+        ExactGeodesics((V, F)).distances([0, 5], max_distance=9.0)
 
 
 def test_heat_needs_its_package(monkeypatch):
