@@ -1,0 +1,128 @@
+"""The distances of spaces of every kind, one row at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import issparse
+
+from rinow import tolerances
+from rinow._arrays import as_floats, as_points
+from rinow.curvature.clouds import arc_distances
+from rinow.errors import InvalidInputError
+from rinow.geodesics.exact import ExactGeodesics
+from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh
+from rinow.metric_space import MetricSpace
+
+__all__ = ["MetricRows", "metric_rows"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+class MetricRows(NamedTuple):
+    """A space as a function from a point to its distances."""
+
+    n_points: int
+    row: Callable[[int, float], Floats]
+    """Distances from a point to all points; those beyond the limit given may be inf."""
+    finish: Callable[[Indices, Indices, Floats], tuple[Floats, float]]
+    """From the points of a region, places of some in it and their distances: better distances, and their error."""
+
+
+def metric_rows(space: Any) -> MetricRows:
+    """The distances of a space of any kind.
+
+    Parameters
+    ----------
+    space : MetricSpace, mesh, (n, n) or (n, d) array_like, graph, or MetricRows
+        Distances; a surface with exact geodesic distances of its vertices; points with straight distances, or in
+        regions where they lie on a surface in space with arcs along it; or edge lengths (scipy sparse or networkx)
+        with shortest paths.  A square array holds distances.
+
+    Raises
+    ------
+    InvalidInputError
+        If `space` is none of these.
+    """
+    if isinstance(space, MetricRows):
+        return space
+    if isinstance(space, tuple | TriangleMesh | IntrinsicMesh) or hasattr(space, "faces"):
+        return _surface(as_mesh(space))
+    if issparse(space) or hasattr(space, "nodes"):
+        space = MetricSpace.from_graph(space)
+    if not isinstance(space, MetricSpace):
+        values = as_floats(space, "space")
+        if values.ndim != 2 or values.shape[0] != values.shape[1]:
+            return _cloud(as_points(values, "space"))
+        space = MetricSpace(values)
+    return _matrix(space)
+
+
+def _matrix(space: MetricSpace) -> MetricRows:
+    """The rows of a matrix."""
+    D = space.distances
+
+    def row(i: int, limit: float) -> Floats:
+        return D[i]
+
+    return MetricRows(len(D), row, _exact)
+
+
+def _cloud(points: Floats) -> MetricRows:
+    """Points with straight distances, or arcs along the surface in space that they lie on."""
+    if not len(points) or not np.isfinite(points).all():
+        raise InvalidInputError(f"space has {len(points)} points, not all finite; give at least one, all finite.")
+
+    def row(i: int, limit: float) -> Floats:
+        return np.linalg.norm(points - points[i], axis=1)
+
+    def finish(members: Indices, chosen: Indices, D: Floats) -> tuple[Floats, float]:
+        arcs = arc_distances(points[members], chosen) if points.shape[1] == 3 else None
+        return arcs or _exact(members, chosen, D)
+
+    return MetricRows(len(points), row, finish)
+
+
+def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:
+    """Vertices with exact geodesic distances."""
+    geodesics = ExactGeodesics(mesh)
+
+    def row(i: int, limit: float) -> Floats:
+        if np.isinf(limit):
+            return geodesics.distances([i])[0]
+        near = geodesics.distances([i], max_distance=limit)
+        distances = np.full(mesh.n_vertices, np.inf)
+        distances[near.indices] = near.data
+        distances[i] = 0.0
+        return distances
+
+    def finish(members: Indices, chosen: Indices, D: Floats) -> tuple[Floats, float]:
+        return D, max(_chord_error(mesh, members), tolerances.COMPARISON)
+
+    return MetricRows(mesh.n_vertices, row, finish)
+
+
+def _exact(members: Indices, chosen: Indices, D: Floats) -> tuple[Floats, float]:
+    """Distances that are as good as float64 allows."""
+    return D, tolerances.COMPARISON
+
+
+def _chord_error(mesh: TriangleMesh | IntrinsicMesh, members: Indices) -> float:
+    """Half the largest share by which an edge between the points is shorter than the arc it stands for.
+
+    An arc of curvature κ is longer than its chord c by the share (κc)²/24 (Haantjes), and κc is the angle between the
+    normals at its ends.  Without positions, c² K is taken as in a regular star: 2/√3 times the angle defect.
+    """
+    inside = np.zeros(mesh.n_vertices, np.bool_)
+    inside[members] = True
+    if isinstance(mesh, IntrinsicMesh):
+        turns = 2 / 3**0.5 * np.abs(mesh.vertex_angle_defects[inside & ~mesh.topology.vertex_is_boundary])
+    else:
+        edges = mesh.topology.edges
+        ends = mesh.vertex_normals[edges[inside[edges].all(axis=1)]]
+        turns = ((ends[:, 0] - ends[:, 1]) ** 2).sum(axis=1)
+    return float(turns.max(initial=0.0)) / 48
