@@ -3,7 +3,7 @@
 import numpy as np
 
 import conformal
-from rinow.curvature.wald_point import wald_curvature
+from rinow import wald_curvature
 
 SURFACE = conformal.Disk()
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from rinow.curvature.rinow import rinow_curvature
+from rinow import rinow_curvature
 
 
 @st.composite

@@ -8,7 +8,7 @@ import pytest
 
 import conformal
 import rinow
-from rinow.curvature.polar import angle_at, polar_coordinates
+from rinow import angle_at, polar_coordinates
 from rinow.kernels import spaceform_model
 
 SURFACE = conformal.Disk()

@@ -9,7 +9,7 @@ import pytest
 
 import rinow
 from naive import regular_disks as naive
-from rinow.curvature.regular import regular_radius
+from rinow import regular_radius
 from rinow.kernels import spaceform_model
 
 PAIRS = np.triu_indices(4, 1)

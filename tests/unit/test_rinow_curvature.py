@@ -14,7 +14,7 @@ import conformal
 import rinow
 from naive import comparison as naive
 from naive import spaceform
-from rinow.curvature.rinow import rinow_curvature, rinow_point_curvature
+from rinow import rinow_curvature, rinow_point_curvature
 
 GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "quadruples.json").read_text())["quadruples"]
 PAIRS = np.triu_indices(4, 1)
@@ -244,7 +244,8 @@ def test_curvature_at_a_point_is_gaussian_curvature():
     at = rinow_point_curvature(D, 0, radius=0.3)
     assert at.exists
     assert at.value == pytest.approx(SURFACE.curvature(P[0]), abs=2 * at.standard_error)
-    assert at.standard_error < 0.6
+    # Half of what the bounds change by between three balls of radius 0.07 to 0.15, where the curvature has slope 6.
+    assert at.standard_error < 0.8
     assert [ball.n_points for ball in at.balls] == sorted([ball.n_points for ball in at.balls], reverse=True)
     # Fewer points contradict less.
     lowers, uppers = [b.lower for b in at.balls], [b.upper for b in at.balls]

@@ -8,8 +8,7 @@ import pytest
 
 import conformal
 import rinow
-from rinow.curvature.rinow import rinow_point_curvature
-from rinow.curvature.wald_point import wald_curvature
+from rinow import rinow_point_curvature, wald_curvature
 from rinow.kernels import spaceform_model
 
 SURFACE = conformal.Disk()

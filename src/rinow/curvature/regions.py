@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rinow import tolerances
 from rinow._arrays import as_indices, read_only
 from rinow.curvature.metric_rows import MetricRows, metric_rows
 from rinow.errors import InvalidInputError
@@ -71,7 +72,7 @@ def region(
     if radius is not None or members.ndim == 0:
         if points is None or members.size != 1 or radius is None or not radius > 0:
             raise InvalidInputError(f"points = {points!r}, radius = {radius!r}: a ball has one centre, radius > 0.")
-        centre, limit = int(members.ravel()[0]), 2.0 * radius
+        centre, limit = int(members.ravel()[0]), 2.0 * radius * (1.0 + tolerances.TRIANGLE_INEQUALITY)
         inside = rows.row(centre, limit) <= radius
         inside[centre] = False
         members = np.r_[centre, np.flatnonzero(inside)]

@@ -64,9 +64,9 @@ class RinowPointCurvature:
     value : float
         Middle between the two bounds of the ball in which they are closest, in 1/length²; nan without one.
     standard_error : float
-        Half their difference.
+        Half the width of the interval that holds the bounds of that ball and of the next larger and smaller ones.
     exists : bool
-        Whether the data support a limit: that difference is below a tenth of 1/radius².
+        Whether the data support a limit: the bounds differ by less than a tenth of 1/radius².
     radius : float
         Radius of that ball.
     balls : tuple of RinowCurvature
@@ -210,7 +210,8 @@ def rinow_point_curvature(
     -----
     The balls shrink by √½ as long as they have 8 points.  By definition 6.2 the curvature κ exists if for every ε a
     ball has curvature at least κ - ε and at most κ + ε.  A small ball knows less (its bounds cross, lower > upper), a
-    large one sees curvature vary, so the ball with the closest bounds decides.
+    large one sees curvature vary, so the ball with the closest bounds decides.  Where the bounds cross, they may agree
+    by chance; what they change by from ball to ball says how well they know the limit.
 
     Examples
     --------
@@ -230,9 +231,10 @@ def rinow_point_curvature(
     gaps = [abs(ball.upper - ball.lower) if np.isfinite([ball.lower, ball.upper]).all() else np.inf for ball in balls]
     best = int(np.argmin(gaps))
     known = balls[best].n_points >= FEWEST and np.isfinite(gaps[best])
+    near = [b for ball in balls[max(best - 1, 0) : best + 2] for b in (ball.lower, ball.upper) if np.isfinite(b)]
     return RinowPointCurvature(
         value=0.5 * (balls[best].lower + balls[best].upper) if known else np.nan,
-        standard_error=0.5 * gaps[best] if known else np.nan,
+        standard_error=0.5 * (max(near) - min(near)) if known else np.nan,
         exists=bool(known and gaps[best] * radii[best] ** 2 < CONTRAST),
         radius=radii[best],
         balls=tuple(balls),

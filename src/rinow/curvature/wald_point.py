@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.regions import region
+from rinow.curvature.wald_limit import limit_at_first
 from rinow.embedding.quadruple import EmbeddingCurvatures, embedding_curvatures
 from rinow.errors import InvalidInputError
 
@@ -22,14 +23,6 @@ MAX_POINTS = 40
 MAX_QUADRUPLES = 20_000
 FEWEST = 5
 """Quadruples that can support a limit: as many as five points have."""
-FEWEST_POINTS = 6
-"""Points that can tell a gradient of curvature from scatter."""
-STEPS = 8
-"""Rounds of choosing values and weights; the choice is settled after three or four."""
-NORMAL = 1.4826
-"""Standard deviation of a normal variable over its median absolute value."""
-HUBER = 2.0
-"""Residuals beyond this many standard deviations weigh less."""
 SCATTER = 0.25
 """Scatter times radius² without a limit: 0.5 at a cone of angle 6 and 1.2 in space; on surfaces it is below 0.2."""
 CONTRAST = 2.0
@@ -123,9 +116,9 @@ def wald_curvature(
     Expected is κ plus a multiple of the mean squared distance of its points from p plus a linear function of its
     centroid, in coordinates from the distances (classical scaling); κ is the value at 0.  A centroid off p would
     cost an error of the first order in the radius, so that of κ is of the second.  Fewer than 6 points give the mean.
-    A quadruple weighs the inverse square of its error ``2 rtol condition/diameter²`` and of the common scatter;
-    residuals above two standard deviations weigh less.  The standard error is the scatter times
-    √(number of coefficients/(n - 3)), n points, since their quadruples are not independent.
+    A quadruple weighs the inverse square of its error, about ``√2 rtol condition/diameter²``, and of the common
+    scatter; residuals above two standard deviations weigh less.  The standard error is both, scatter and middle error,
+    times √(number of coefficients/(n - 3)), n points, since their quadruples are not independent.
 
     `exists` means: at least 5 quadruples, of which at most one in twenty has no value (graphs branch); a scatter below
     1/4 of 1/radius² (at a cone it is about 1.5 times the missing angle over radius²); and convex quadrilaterals that
@@ -158,34 +151,35 @@ def wald_curvature(
     if kind not in ("wald", "modified"):
         raise InvalidInputError(f'kind = {kind!r} is unknown; choose "wald" or "modified".')
     ball = region(space, point, radius, size=MAX_POINTS, rtol=rtol)
-    Q = _all_quadruples(len(ball.indices)) if kind == "wald" else _side_quadruples(ball.distances, ball.rtol)
+    Q = (_all_quadruples if kind == "wald" else _side_quadruples)(ball.distances, ball.rtol)
     if len(Q) > MAX_QUADRUPLES:
         rng = np.random.default_rng(0) if rng is None else rng
         Q = Q[np.sort(rng.choice(len(Q), MAX_QUADRUPLES, replace=False))]
-    found = embedding_curvatures(_six_distances(ball.distances, Q))
+    sixes = _six_distances(ball.distances, Q)
+    found = embedding_curvatures(sixes)
     n_quadruples, n_without = int((found.count >= 0).sum()), int((found.count == 0).sum())
     some = found.count > 0
     if not some.any():
         return WaldCurvature(np.nan, np.nan, n_quadruples, n_without, False, radius)
     found = EmbeddingCurvatures(found.values[some], found.count[some], found.kind[some], found.condition[some])
-    limit = _limit(ball.distances, Q[some], found, ball.rtol)
+    limit = limit_at_first(ball.distances, Q[some], found, _errors(sixes[some], found, ball.rtol))
     exists = n_quadruples >= FEWEST and n_without <= WITHOUT_VALUE * n_quadruples
     exists &= limit.scatter * radius**2 < SCATTER and limit.contrast < CONTRAST
     return WaldCurvature(limit.value, limit.standard_error, n_quadruples, n_without, bool(exists), radius)
 
 
-def _all_quadruples(n: int) -> Indices:
+def _all_quadruples(D: Floats, rtol: float) -> Indices:
     """Four different points in every way, ascending."""
-    return np.array(list(combinations(range(n), 4)), np.intp).reshape(-1, 4)
+    return np.array(list(combinations(range(len(D)), 4)), np.intp).reshape(-1, 4)
 
 
 def _side_quadruples(D: Floats, rtol: float) -> Indices:
-    """Four different points of which one lies between two others."""
-    points = np.arange(len(D))
-    between = [np.argwhere(np.triu(d[:, None] + d - D <= rtol * D)) for d in D]
-    triples = np.array([(v, i, j) for v, pairs in enumerate(between) for i, j in pairs if v not in (i, j)], np.intp)
-    triples = triples.reshape(-1, 3)
-    Q = np.column_stack([np.repeat(triples, len(D), axis=0), np.tile(points, len(triples))])
+    """Four different points of which one lies between two others, ascending."""
+    excess = D[:, :, None] + D[:, None, :] - D  # [v, i, j]: of i, v, j
+    triples = np.argwhere(excess <= rtol * D)
+    v, i, j = triples.T
+    triples = triples[(i < j) & (v != i) & (v != j)]
+    Q = np.column_stack([np.repeat(triples, len(D), axis=0), np.tile(np.arange(len(D)), len(triples))])
     Q = np.sort(Q, axis=1)
     return np.unique(Q[(np.diff(Q, axis=1) > 0).all(axis=1)], axis=0)
 
@@ -196,75 +190,14 @@ def _six_distances(D: Floats, Q: Indices) -> Floats:
     return D[Q[:, i], Q[:, j]]
 
 
-class _Limit(NamedTuple):
-    """The limit with what decides whether it exists."""
+def _errors(sixes: Floats, found: EmbeddingCurvatures, rtol: float) -> Floats:
+    """(n, 2): standard deviation of each value if distances are off by up to the share `rtol`, uniformly.
 
-    value: float
-    standard_error: float
-    scatter: float
-    contrast: float
-    """Difference of the middle convex quadrilateral and the middle triangle with an inner point, over the scatter."""
-
-
-def _limit(D: Floats, Q: Indices, found: EmbeddingCurvatures, rtol: float) -> _Limit:
-    """The curvature at point 0 from quadruples that have one."""
-    diameters = _six_distances(D, Q).max(axis=1)[:, None]
-    errors = 2 * max(rtol, np.finfo(np.float64).eps) * found.condition / diameters**2
-    design = _design(_chart(D)[Q])
-    coefficients, nearest = _robust_fit(found.values, errors, design)
-    chosen = (np.arange(len(Q)), nearest)
-    error, kind = errors[chosen], found.kind[chosen]
-    residual, weight = found.values[chosen] - design @ coefficients, 1 / error
-    noise, typical = _weighted_median(error, weight), NORMAL * _weighted_median(np.abs(residual), weight)
-    squares = 1 / (error**2 + typical**2)
-    largest = max(typical, float((squares @ residual**2 / squares.sum()) ** 0.5))
-    n_points, n_coefficients = len(np.unique(Q)), len(coefficients)
-    known = 0.5 * (n_points - 2) * (n_points - 3)  # distances less the coordinates of plane points, up to motions
-    unbiased = (known / max(known - n_coefficients, 0.5)) ** 0.5
-    scatter = unbiased * float(np.hypot(largest, noise))
-    middles = [_weighted_median(residual[kind == k], weight[kind == k]) for k in ("planar", "nonplanar")]
-    contrast = abs(middles[0] - middles[1]) / (unbiased * np.hypot(typical, noise))
-    standard_error = scatter * (n_coefficients / max(n_points - 3, 1)) ** 0.5
-    return _Limit(float(coefficients[0]), standard_error, scatter, float(np.nan_to_num(contrast)))
-
-
-def _robust_fit(values: Floats, errors: Floats, design: Floats) -> tuple[Floats, Indices]:
-    """Coefficients of a linear model of one value of each row, and which; outliers weigh less (Huber)."""
-    rows = np.arange(len(values))
-    nearest: Indices = np.nanargmin(np.abs(values), axis=1)
-    expected: Floats = np.full(len(values), _weighted_median(values[rows, nearest], 1 / errors[rows, nearest]))
-    coefficients: Floats = np.zeros(design.shape[1])
-    for _ in range(STEPS):
-        nearest = np.nanargmin(np.abs(values - expected[:, None]), axis=1)
-        value, error = values[rows, nearest], errors[rows, nearest]
-        scatter = NORMAL * _weighted_median(np.abs(value - expected), 1 / error)
-        weights = 1 / np.hypot(error, scatter)
-        weights *= np.sqrt(HUBER / np.maximum(np.abs(value - expected) * weights, HUBER))
-        coefficients = np.asarray(np.linalg.lstsq(design * weights[:, None], value * weights)[0], np.float64)
-        expected = design @ coefficients
-    return coefficients, nearest
-
-
-def _design(X: Floats) -> Floats:
-    """(n, 1) or (n, 4): 1, centroid and mean square of quadruples of plane points, each column scaled to 1."""
-    columns = [np.ones(len(X))]
-    if len(np.unique(X.reshape(-1, 2), axis=0)) >= FEWEST_POINTS:
-        columns += [*X.mean(axis=1).T, (X**2).sum(axis=2).mean(axis=1)]
-    design = np.column_stack(columns)
-    return design / np.maximum(np.abs(design).max(axis=0), np.finfo(np.float64).tiny)
-
-
-def _chart(D: Floats) -> Floats:
-    """(n, 2): coordinates of the points around the first one, by classical scaling."""
-    gram = 0.5 * (D[0][:, None] ** 2 + D[0] ** 2 - D**2)
-    squares, axes = np.linalg.eigh(gram)
-    return axes[:, -2:] * np.sqrt(np.maximum(squares[-2:], 0.0))
-
-
-def _weighted_median(x: Floats, weights: Floats) -> float:
-    """The value that half of the weight is below; nan for none."""
-    if not len(x):
-        return np.nan
-    order = np.argsort(x, kind="stable")
-    below = np.cumsum(weights[order])
-    return float(x[order[np.searchsorted(below, 0.5 * below[-1])]])
+    Two values at the distance s are ± √(s²/4 + x), x linear in the distances: the linear error e, large where s is
+    small, becomes √(s²/4 + s e) - s/2.
+    """
+    diameters = sixes.max(axis=1, keepdims=True)
+    linear = 2**0.5 * max(rtol, np.finfo(np.float64).eps) * found.condition / diameters**2
+    s = np.where(found.count == 2, found.values[:, 1] - found.values[:, 0], np.inf)[:, None]
+    with np.errstate(invalid="ignore"):
+        return np.where(np.isfinite(s), 2 * linear / (1 + np.sqrt(1 + 4 * linear / s)), linear)
