@@ -8,6 +8,7 @@ import pytest
 
 import conformal
 import rinow
+import shapes
 from rinow import angle_at, polar_coordinates
 from rinow.kernels import spaceform_model
 
@@ -38,7 +39,10 @@ def test_angle_of_a_hinge(k):
     assert angle_at(D, 0, 3, 4, curvature=k) == pytest.approx(1, abs=1e-12)
     assert angle_at(D, 0, 4, 3, curvature=k) == pytest.approx(1, abs=1e-12)
     # Euclidean comparison from points at 0.05 and 0.1: the next order of K d²/6 is 0.05·0.1 times 0.3².
-    assert angle_at(D, 0, 3, 4) == pytest.approx(1, abs=1e-4)
+    assert angle_at(D, 0, 3, 4, curvature=0.0) == pytest.approx(1, abs=1e-4)
+    # Curvature from 12 points within 0.4, to 1e-9, counts a third of the area of the triangle.
+    assert angle_at(D, 0, 3, 4) == pytest.approx(1, abs=1e-9)
+    assert angle_at(D[3:][:, 3:], 0, 1, 2) == pytest.approx(angle_at(D, 3, 4, 5, curvature=k), abs=1e-8)
     assert angle_at(D, 0, 3, 2) == 0
     assert math.isnan(angle_at(D, 0, 0, 3))
 
@@ -90,6 +94,59 @@ def test_rule_of_the_paper_is_corrected():
     points = np.stack([np.cos(theta), np.sin(theta)], axis=1)
     points[0] = 0
     assert polar_coordinates(points, 0, 1, 2)[1:, 1] == pytest.approx(theta[1:], abs=1e-12)
+
+
+@pytest.mark.parametrize("shuffled", [False, True])
+def test_angles_on_a_flat_mesh_are_exact(shuffled):
+    x, y = np.meshgrid(np.arange(7.0), np.arange(5.0))
+    V = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
+    a = (np.arange(4)[:, None] * 7 + np.arange(6)).ravel()
+    F = np.concatenate([np.stack([a, a + 1, a + 8], axis=1), np.stack([a, a + 8, a + 7], axis=1)])
+    F = np.roll(F, 1, axis=1)[np.random.default_rng(7).permutation(len(F))] if shuffled else F
+    for p, p1, p2 in ((17, 19, 5), (0, 6, 33)):  # inside, and at a corner of the boundary
+        z = (V[:, 0] - V[p, 0]) + 1j * (V[:, 1] - V[p, 1])
+        theta = np.angle(z / z[p1]) * np.sign(np.angle(z[p2] / z[p1]))
+        expected = np.stack([np.abs(z), np.where(z == 0, 0, theta % (2 * math.pi))], axis=1)
+        assert polar_coordinates((V, F), p, p1, p2) == pytest.approx(expected, abs=1e-9)
+        for q in (3, 12, 30):
+            assert angle_at((V, F), p, p1, q) == pytest.approx(abs(np.angle(z[q] / z[p1])), abs=1e-12)
+
+
+def test_angles_on_a_sphere_are_those_of_great_circles():
+    shape = shapes.irregular_sphere(1000)
+    V, rng = shape.vertices, np.random.default_rng(7)
+    p = 17
+    near = np.flatnonzero((V @ V[p] > math.cos(0.9)) & (V @ V[p] < math.cos(0.3)))
+    q, r = rng.choice(near, (2, 40))
+    u = V - (V @ V[p])[:, None] * V[p]
+    u /= np.maximum(np.linalg.norm(u, axis=1), 1e-300)[:, None]
+    expected = np.arccos(np.clip((u[q] * u[r]).sum(axis=1), -1, 1))
+    actual = np.array([angle_at(shape[:2], p, *pair) for pair in zip(q.tolist(), r.tolist(), strict=True)])
+    # The faces around a vertex miss K times their area, 4π/1000, of the full turn, unevenly; on the way to a vertex
+    # n edges off as much is missing on either side of the path, each time 1/n as far from its end.
+    assert np.abs(actual - expected).max() < 4 * 4 * math.pi / 1000
+    assert abs(np.mean(actual - expected)) < 0.01
+    # Without the faces, from distances: the curvature is estimated.
+    angle = np.arccos(np.clip(V @ V.T, -1, 1)) * (1 - np.eye(len(V)))
+    some = np.r_[p, near]
+    D = angle[np.ix_(some, some)]
+    D = 0.5 * (D + D.T)
+    place = np.searchsorted(near, [q, r]) + 1
+    for i in range(5):
+        assert angle_at(D, 0, *place[:, i].tolist()) == pytest.approx(expected[i], abs=1e-5)
+
+
+def test_corner_of_a_cube_has_three_right_angles():
+    cube = shapes.cube()
+    V = cube.vertices
+    p = 0
+    edges = np.flatnonzero(np.isclose(np.linalg.norm(V - V[p], axis=1), np.linalg.norm(V[1:] - V[p], axis=1).min()))
+    a, b, c = edges.tolist()
+    for q, r in ((a, b), (b, c), (a, c)):
+        assert angle_at(cube[:2], p, q, r) == pytest.approx(math.pi / 2, abs=1e-12)
+    theta = polar_coordinates(cube[:2], p, a, b)[[a, b, c], 1]
+    # Three quarters of a full turn: the last edge is a right angle before the first one.
+    assert theta == pytest.approx([0, math.pi / 2, 1.5 * math.pi], abs=1e-12)
 
 
 def test_cone_point_has_less_than_a_full_turn():

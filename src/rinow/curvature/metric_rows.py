@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import issparse
+from scipy.sparse import csr_array, issparse
 
 from rinow import tolerances
 from rinow._arrays import as_floats, as_points
@@ -17,10 +17,19 @@ from rinow.geodesics.exact import ExactGeodesics
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh
 from rinow.metric_space import MetricSpace
 
-__all__ = ["MetricRows", "metric_rows"]
+__all__ = ["MetricRows", "Rose", "exact", "metric_rows"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
+
+
+class Rose(NamedTuple):
+    """The directions in which the shortest paths leave a point."""
+
+    directions: Floats
+    """Angle of the path to every point, counted along the surface in radians; nan for the point itself."""
+    total: float
+    """Angle of a full turn; inf at a boundary, where directions do not close up."""
 
 
 class MetricRows(NamedTuple):
@@ -31,6 +40,8 @@ class MetricRows(NamedTuple):
     """Distances from a point to all points; those beyond the limit given may be inf."""
     finish: Callable[[Indices, Indices, Floats], tuple[Floats, float]]
     """From the points of a region, places of some in it and their distances: better distances, and their error."""
+    rose: Callable[[int], Rose | None]
+    """The directions at a point, None where only distances are known."""
 
 
 def metric_rows(space: Any) -> MetricRows:
@@ -69,7 +80,7 @@ def _matrix(space: MetricSpace) -> MetricRows:
     def row(i: int, limit: float) -> Floats:
         return D[i]
 
-    return MetricRows(len(D), row, _exact)
+    return MetricRows(len(D), row, exact, _no_rose)
 
 
 def _cloud(points: Floats) -> MetricRows:
@@ -82,9 +93,9 @@ def _cloud(points: Floats) -> MetricRows:
 
     def finish(members: Indices, chosen: Indices, D: Floats) -> tuple[Floats, float]:
         arcs = arc_distances(points[members], chosen) if points.shape[1] == 3 else None
-        return arcs or _exact(members, chosen, D)
+        return arcs or exact(members, chosen, D)
 
-    return MetricRows(len(points), row, finish)
+    return MetricRows(len(points), row, finish, _no_rose)
 
 
 def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:
@@ -93,8 +104,8 @@ def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:
 
     def row(i: int, limit: float) -> Floats:
         if np.isinf(limit):
-            return geodesics.distances([i])[0]
-        near = geodesics.distances([i], max_distance=limit)
+            return np.asarray(geodesics.distances([i]), np.float64)[0]
+        near = csr_array(geodesics.distances([i], max_distance=limit))
         distances = np.full(mesh.n_vertices, np.inf)
         distances[near.indices] = near.data
         distances[i] = 0.0
@@ -103,10 +114,25 @@ def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:
     def finish(members: Indices, chosen: Indices, D: Floats) -> tuple[Floats, float]:
         return D, max(_chord_error(mesh, members), tolerances.COMPARISON)
 
-    return MetricRows(mesh.n_vertices, row, finish)
+    def rose(i: int) -> Rose | None:
+        distances = row(i, np.inf)
+        reach = float(distances[np.isfinite(distances)].max(initial=0.0))
+        ball = geodesics.polar([i], max_distance=reach * (1 + tolerances.COMPARISON))
+        if not ball.total_angles[0] > 0:
+            return None
+        directions = np.full(mesh.n_vertices, np.nan)
+        directions[ball.vertices] = ball.directions
+        on_boundary = mesh.topology.vertex_is_boundary[i]
+        return Rose(directions, np.inf if on_boundary else float(ball.total_angles[0]))
+
+    return MetricRows(mesh.n_vertices, row, finish, rose)
 
 
-def _exact(members: Indices, chosen: Indices, D: Floats) -> tuple[Floats, float]:
+def _no_rose(i: int) -> None:
+    """Nothing is known of directions."""
+
+
+def exact(members: Indices, chosen: Indices, D: Floats) -> tuple[Floats, float]:
     """Distances that are as good as float64 allows."""
     return D, tolerances.COMPARISON
 

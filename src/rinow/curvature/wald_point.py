@@ -19,7 +19,6 @@ __all__ = ["WaldCurvature", "wald_curvature"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-MAX_POINTS = 40
 MAX_QUADRUPLES = 20_000
 FEWEST = 5
 """Quadruples that can support a limit: as many as five points have."""
@@ -67,6 +66,7 @@ def wald_curvature(
     kind: Literal["wald", "modified"] = "wald",
     rng: np.random.Generator | None = None,
     rtol: float | None = None,
+    max_points: int = 40,
 ) -> WaldCurvature:
     r"""Curvature of the surface of constant curvature in which small quadruples around a point embed.
 
@@ -82,8 +82,7 @@ def wald_curvature(
     point : int
         Index of the point.
     radius : float
-        Radius of the ball, in the unit of the distances.  Of more than 40 points in it, 40 are taken, each as far as
-        possible from those before it.
+        Radius of the ball, in the unit of the distances.
     kind : {"wald", "modified"}, default "wald"
         All quadruples, or those with a linear triple (up to `rtol`).
     rng : numpy.random.Generator, optional
@@ -91,6 +90,8 @@ def wald_curvature(
     rtol : float, optional
         Share by which a distance may be wrong.  By default 1e-12, and for a mesh an estimate of what its edges miss of
         the arcs of a smooth surface; 0 takes the mesh as the polyhedron it is.
+    max_points : int, default 40
+        Of more points in the ball this many are taken, each as far as possible from those before it.
 
     Returns
     -------
@@ -150,7 +151,7 @@ def wald_curvature(
     """
     if kind not in ("wald", "modified"):
         raise InvalidInputError(f'kind = {kind!r} is unknown; choose "wald" or "modified".')
-    ball = region(space, point, radius, size=MAX_POINTS, rtol=rtol)
+    ball = region(space, point, radius, size=max_points, rtol=rtol)
     Q = (_all_quadruples if kind == "wald" else _side_quadruples)(ball.distances, ball.rtol)
     if len(Q) > MAX_QUADRUPLES:
         rng = np.random.default_rng(0) if rng is None else rng
