@@ -11,12 +11,14 @@ import shapes
 from rinow.geodesics.distances import geodesic_distances, geodesic_space
 
 SURFACES = {
-    "sphere": shapes.irregular_sphere(1600),
-    "regular sphere": shapes.icosphere(4),
+    "sphere": shapes.irregular_sphere(1000),
+    "regular sphere": shapes.icosphere(3),
     "torus": shapes.irregular_torus(2500),
-    "ellipsoid": shapes.irregular_ellipsoid(2500),
+    "ellipsoid": shapes.irregular_ellipsoid(1600),
 }
-POINTS = {"sphere": (17, 1000), "regular sphere": (17, 1000), "torus": (0, 700, 1800), "ellipsoid": (17, 1000, 2000)}
+POINTS = {"sphere": (17,), "regular sphere": (17,), "torus": (0, 700), "ellipsoid": (1000,)}
+EDGES = {"sphere": 5, "regular sphere": 5, "torus": 4, "ellipsoid": 5}
+"""Radius of the balls in edge lengths; those of the torus stay on one side of its tube."""
 
 
 def mesh_of(shape):
@@ -31,13 +33,13 @@ def edge(mesh):
 def test_wald_modified_and_rinow_curvature_agree_with_gauss(name):
     # Wald's theorem 3.18, and Kirk's 6.3, 6.7 and 6.8 on surfaces of variable curvature.
     mesh, K = mesh_of(SURFACES[name]), SURFACES[name].gaussian
-    radius = 6 * edge(mesh)
+    radius = EDGES[name] * edge(mesh)
     for p in POINTS[name]:
         wald, modified = (rinow.wald_curvature(mesh, p, radius=radius, kind=kind) for kind in ("wald", "modified"))
-        triangles = rinow.rinow_point_curvature(mesh, p, radius=radius)
+        triangles = rinow.rinow_point_curvature(mesh, p, radius=radius, max_points=60)
         assert wald.exists and modified.exists
         assert wald.value == pytest.approx(K[p], abs=3 * wald.standard_error)
-        assert wald.standard_error * radius**2 < 0.1
+        assert wald.standard_error * radius**2 < 0.15
         assert modified.value == pytest.approx(wald.value, abs=3 * wald.standard_error + modified.standard_error)
         assert triangles.value == pytest.approx(wald.value, abs=3 * wald.standard_error + 2 * triangles.standard_error)
 
@@ -45,14 +47,14 @@ def test_wald_modified_and_rinow_curvature_agree_with_gauss(name):
 @pytest.mark.parametrize("name", SURFACES)
 def test_bounds_of_a_region_hold_the_curvature_of_the_smooth_surface(name):
     mesh, K = mesh_of(SURFACES[name]), SURFACES[name].gaussian
-    radius = 6 * edge(mesh)
+    radius = EDGES[name] * edge(mesh)
     p = POINTS[name][-1]
-    bounds = rinow.rinow_curvature(mesh, p, radius=radius)
+    bounds = rinow.rinow_curvature(mesh, p, radius=radius, max_points=60)
     inside = K[geodesic_distances(mesh, [p])[0] <= radius]
     # With the errors of the chords allowed for, nothing contradicts the extremes of curvature in the ball.
     assert bounds.lower >= inside.min() - 1e-9
     assert bounds.upper <= inside.max() + 1e-9
-    exact = rinow.rinow_curvature(mesh, p, radius=radius, rtol=0.0)
+    exact = rinow.rinow_curvature(mesh, p, radius=radius, max_points=60, rtol=0.0)
     assert exact.lower < bounds.lower and exact.upper > bounds.upper  # the polyhedron itself has corners
 
 
@@ -67,16 +69,17 @@ def test_witness_of_a_mesh_shows_the_bound():
 
 
 def test_lengths_suffice():
-    mesh = mesh_of(SURFACES["torus"])
+    shape = shapes.irregular_torus(600)
+    mesh = mesh_of(shape)
     lengths = np.linalg.norm(mesh.vertices[mesh.faces[:, [1, 2, 0]]] - mesh.vertices[mesh.faces[:, [2, 0, 1]]], axis=2)
     intrinsic = rinow.IntrinsicMesh(mesh.faces, lengths)
-    radius = 5 * edge(mesh)
+    radius = 3 * edge(mesh)
     for function in (rinow.wald_curvature, rinow.rinow_curvature):
-        a, b = (function(m, 700, radius=radius, rtol=1e-4) for m in (mesh, intrinsic))
+        a, b = (function(m, 300, radius=radius, rtol=1e-4) for m in (mesh, intrinsic))
         field = "value" if function is rinow.wald_curvature else "lower"
         assert getattr(a, field) == pytest.approx(getattr(b, field), rel=1e-6)
-    assert rinow.wald_curvature(intrinsic, 700, radius=radius).value == pytest.approx(
-        SURFACES["torus"].gaussian[700], abs=0.2 / radius**2
+    assert rinow.wald_curvature(intrinsic, 300, radius=radius).value == pytest.approx(
+        shape.gaussian[300], abs=0.2 / radius**2
     )
 
 
@@ -114,6 +117,7 @@ def test_weighted_graph_and_cloud_of_a_sphere():
     D = sphere.distance(P[:, None], P)
     D = 0.5 * (D + D.T)
     graph = nx.Graph()
+    graph.add_nodes_from(range(30))
     graph.add_weighted_edges_from((i, j, D[i, j]) for i in range(30) for j in range(i))
     for space in (D, rinow.MetricSpace(D), graph):
         curvature = rinow.wald_curvature(space, 0, radius=0.6)
@@ -127,7 +131,9 @@ def test_weighted_graph_and_cloud_of_a_sphere():
     assert rinow.wald_curvature(cloud, 0, radius=0.3).value == pytest.approx(1, abs=0.02)
     bounds = rinow.rinow_curvature(cloud, 0, radius=0.3)
     assert bounds.upper <= 1 <= bounds.lower
-    assert bounds.lower - bounds.upper < 0.2
+    assert (
+        bounds.lower - bounds.upper < 0.5
+    )  # the polynomial is sure of arcs to 1e-4: 200 of it over the diameter squared
 
 
 def test_vertex_of_another_component_is_not_in_the_ball():

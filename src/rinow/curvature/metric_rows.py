@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array, issparse
+from scipy.sparse import coo_array, csr_array, issparse
 
 from rinow import tolerances
 from rinow._arrays import as_floats, as_points
@@ -38,6 +38,8 @@ class MetricRows(NamedTuple):
     n_points: int
     row: Callable[[int, float], Floats]
     """Distances from a point to all points; those beyond the limit given may be inf."""
+    block: Callable[[Indices, float], Floats]
+    """Distances between some points; those beyond the limit given may be inf."""
     finish: Callable[[Indices, Indices, Floats], tuple[Floats, float]]
     """From the points of a region, places of some in it and their distances: better distances, and their error."""
     rose: Callable[[int], Rose | None]
@@ -80,7 +82,10 @@ def _matrix(space: MetricSpace) -> MetricRows:
     def row(i: int, limit: float) -> Floats:
         return D[i]
 
-    return MetricRows(len(D), row, exact, _no_rose)
+    def block(some: Indices, limit: float) -> Floats:
+        return D[np.ix_(some, some)]
+
+    return MetricRows(len(D), row, block, exact, _no_rose)
 
 
 def _cloud(points: Floats) -> MetricRows:
@@ -95,7 +100,10 @@ def _cloud(points: Floats) -> MetricRows:
         arcs = arc_distances(points[members], chosen) if points.shape[1] == 3 else None
         return arcs or exact(members, chosen, D)
 
-    return MetricRows(len(points), row, finish, _no_rose)
+    def block(some: Indices, limit: float) -> Floats:
+        return np.linalg.norm(points[some, None] - points[some], axis=2)
+
+    return MetricRows(len(points), row, block, finish, _no_rose)
 
 
 def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:
@@ -109,6 +117,15 @@ def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:
         distances = np.full(mesh.n_vertices, np.inf)
         distances[near.indices] = near.data
         distances[i] = 0.0
+        return distances
+
+    def block(some: Indices, limit: float) -> Floats:
+        if np.isinf(limit):
+            return np.asarray(geodesics.distances(some), np.float64)[:, some]
+        near = coo_array(csr_array(geodesics.distances(some, max_distance=limit))[:, some])
+        distances = np.full((len(some), len(some)), np.inf)
+        distances[near.coords] = near.data
+        np.fill_diagonal(distances, 0.0)
         return distances
 
     def finish(members: Indices, chosen: Indices, D: Floats) -> tuple[Floats, float]:
@@ -125,7 +142,7 @@ def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:
         on_boundary = mesh.topology.vertex_is_boundary[i]
         return Rose(directions, np.inf if on_boundary else float(ball.total_angles[0]))
 
-    return MetricRows(mesh.n_vertices, row, finish, rose)
+    return MetricRows(mesh.n_vertices, row, block, finish, rose)
 
 
 def _no_rose(i: int) -> None:

@@ -18,6 +18,9 @@ __all__ = ["Region", "region"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
+BLOCK = 256
+"""Distances between so many points are computed at once."""
+
 
 @dataclass(frozen=True, slots=True)
 class Region:
@@ -88,11 +91,16 @@ def region(
 
 def _farthest_points(rows: MetricRows, members: Indices, size: int, limit: float) -> tuple[Indices, Floats]:
     """Places of points chosen one by one, each the farthest from those before it, and their distances."""
-    order, D = [0], [rows.row(int(members[0]), limit)[members]]
+    block = rows.block(members, limit) if len(members) <= BLOCK else None
+
+    def row_of(i: int) -> Floats:
+        return rows.row(int(members[i]), limit)[members] if block is None else block[i]
+
+    order, D = [0], [row_of(0)]
     nearest = D[0]
     while len(order) < size and nearest.max() > 0:
         order.append(int(nearest.argmax()))
-        D.append(rows.row(int(members[order[-1]]), limit)[members])
+        D.append(row_of(order[-1]))
         nearest = np.minimum(nearest, D[-1])
     distances = np.stack(D)[:, order]
     return np.array(order, np.intp), np.minimum(distances, distances.T)
