@@ -3,12 +3,13 @@
 import math
 
 import networkx as nx
+import numba
 import numpy as np
 import pytest
 
 import conformal
 import rinow
-from rinow import rinow_point_curvature, wald_curvature
+from rinow import regular_radius, rinow_point_curvature, wald_curvature
 from rinow.kernels import spaceform_model
 
 SURFACE = conformal.Disk()
@@ -136,6 +137,18 @@ def test_points_of_a_surface_in_space_have_the_curvature_of_the_surface():
         assert curvature.value == pytest.approx(expected, abs=0.01 * abs(expected) + 1e-9)
 
 
+@pytest.mark.parametrize("exponent", [1.2, 1.8, 2.2, 3.0, np.inf])
+@pytest.mark.parametrize("n", [8, 40])
+def test_normed_planes_that_are_not_euclidean_have_none(exponent, n):
+    # They are flat at no scale: a plane of norm p looks the same however small the ball.
+    points = np.random.default_rng(7).uniform(-1, 1, (n, 2))
+    points[0] = 0
+    D = np.linalg.norm(points[:, None] - points, ord=exponent, axis=2)
+    for radius in (1.5, 1.5e-4):
+        assert not wald_curvature(D * (radius / 1.5), 0, radius=radius).exists
+        assert not rinow_point_curvature(D * (radius / 1.5), 0, radius=radius).exists
+
+
 @pytest.mark.parametrize("angle", [3.0, 5.0, 6.0, 7.0, 8.0])
 @pytest.mark.parametrize("n", [20, 60])
 def test_cone_points(angle, n):
@@ -186,6 +199,16 @@ def test_random_choice_of_quadruples():
     assert default == seeded
     assert other.value != default.value
     assert other.value == pytest.approx(default.value, abs=default.standard_error)
+
+
+def test_same_bits_on_one_and_two_threads():
+    D, threads = SURFACE.distances(SURFACE.sample(15, 0.1, seed=9)), numba.get_num_threads()
+    both = wald_curvature(D, 0, radius=1.0), regular_radius(D, 0)
+    numba.set_num_threads(1)
+    try:
+        assert (wald_curvature(D, 0, radius=1.0), regular_radius(D, 0)) == both
+    finally:
+        numba.set_num_threads(threads)
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ PAIRS = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
 REASONS = {
     -1: "the points lie on a line, or two of them coincide: every curvature up to (pi / largest distance)^2 will do.",
     0: "two triples of the points lie on lines that branch off at a common middle point; no surface has that.",
-    1: "only one value: a triple lies on a line, or the quadruple is like a tree.",
+    1: "a triple lies on a line, or the quadruple is like a tree.",
     2: "",
 }
 
@@ -120,7 +120,8 @@ def _print(record: dict[str, Any]) -> None:
         console().print(table)
     notes = [record["unit"]]
     if record["reason"]:
-        notes.append(f"{len(record['values']) or 'no'} value(s): {record['reason']}")
+        found = len(record["values"])
+        notes.append(f"{('no single value', 'only one value', 'two values')[found]}: {record['reason']}")
     if (robinson := record["robinson"]) is not None:
         notes.append(
             f"Robinson's formula in the order {robinson['order']}: {robinson['value']:.15g}, "
