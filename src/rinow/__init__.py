@@ -14,8 +14,10 @@ _HOME = {
     "ConvergenceError": "errors",
     "CurvatureFit": "embedding.point_set",
     "EmbeddingCurvatures": "embedding.quadruple",
+    "ExactGeodesics": "geodesics.exact",
     "FileFormatError": "errors",
     "HausdorffDistance": "comparison.hausdorff",
+    "GeodesicBalls": "geodesics.exact",
     "IntrinsicMesh": "mesh",
     "InvalidInputError": "errors",
     "InvalidMeshError": "errors",
@@ -50,6 +52,8 @@ _HOME = {
     "semidependent_order": "embedding.semidependent",
     "star_curvature": "embedding.star",
     "hausdorff_distance": "comparison.hausdorff",
+    "geodesic_distances": "geodesics.distances",
+    "geodesic_space": "geodesics.distances",
 }
 
 __all__ = ["__version__", *sorted(_HOME)]  # pyright: ignore[reportUnsupportedDunderAll]

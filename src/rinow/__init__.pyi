@@ -34,6 +34,10 @@ from rinow.errors import InvalidMeshError as InvalidMeshError
 from rinow.errors import MissingDependencyError as MissingDependencyError
 from rinow.errors import NotAMetricError as NotAMetricError
 from rinow.errors import RinowError as RinowError
+from rinow.geodesics.distances import geodesic_distances as geodesic_distances
+from rinow.geodesics.distances import geodesic_space as geodesic_space
+from rinow.geodesics.exact import ExactGeodesics as ExactGeodesics
+from rinow.geodesics.exact import GeodesicBalls as GeodesicBalls
 from rinow.io.mesh_files import read_mesh as read_mesh
 from rinow.io.mesh_files import write_mesh as write_mesh
 from rinow.mesh import IntrinsicMesh as IntrinsicMesh
