@@ -38,8 +38,16 @@ from rinow.geodesics.distances import geodesic_distances as geodesic_distances
 from rinow.geodesics.distances import geodesic_space as geodesic_space
 from rinow.geodesics.exact import ExactGeodesics as ExactGeodesics
 from rinow.geodesics.exact import GeodesicBalls as GeodesicBalls
+from rinow.geodesics.length_space import intrinsic_metric as intrinsic_metric
+from rinow.geodesics.length_space import length_defect as length_defect
+from rinow.geodesics.length_space import midpoints as midpoints
 from rinow.io.mesh_files import read_mesh as read_mesh
 from rinow.io.mesh_files import write_mesh as write_mesh
 from rinow.mesh import IntrinsicMesh as IntrinsicMesh
 from rinow.mesh import TriangleMesh as TriangleMesh
 from rinow.metric_space import MetricSpace as MetricSpace
+from rinow.nets.epsilon_graph import EpsilonGraph as EpsilonGraph
+from rinow.nets.epsilon_graph import epsilon_graph as epsilon_graph
+from rinow.nets.farthest_point import FarthestPointNet as FarthestPointNet
+from rinow.nets.farthest_point import farthest_point_net as farthest_point_net
+from rinow.nets.farthest_point import is_epsilon_net as is_epsilon_net

@@ -13,7 +13,7 @@ from rinow._arrays import as_indices, as_points
 from rinow.comparison.hausdorff_surfaces import surface_distance
 from rinow.comparison.surface_tree import frame_of, surface_of_mesh, surface_of_points
 from rinow.errors import InvalidInputError, InvalidMeshError
-from rinow.mesh import TriangleMesh, as_triangle_mesh
+from rinow.mesh import TriangleMesh, as_triangle_mesh, is_mesh_like
 from rinow.metric_space import as_metric_space
 
 __all__ = ["HausdorffDistance", "hausdorff_distance"]
@@ -123,7 +123,7 @@ def hausdorff_distance(A: Any, B: Any, *, space: Any = None, tolerance: float = 
         raise InvalidInputError(f"tolerance = {tolerance} is not positive; give a share of the diagonal such as 1e-4.")
     if space is not None:
         return _between_subsets(as_metric_space(space).distances, A, B)
-    if _is_mesh(A) or _is_mesh(B):
+    if is_mesh_like(A) or is_mesh_like(B):
         return _between_surfaces(_as_surface(A, "A"), _as_surface(B, "B"), tolerance)
     P, Q = _as_point_set(A, "A"), _as_point_set(B, "B")
     if P.shape[1] != Q.shape[1]:
@@ -131,15 +131,8 @@ def hausdorff_distance(A: Any, B: Any, *, space: Any = None, tolerance: float = 
     return _between_points(P, Q)
 
 
-def _is_mesh(value: Any) -> bool:
-    """Whether a value is a mesh, an object with faces, or a pair of two tables."""
-    if any(hasattr(value, name) for name in ("faces", "regular_faces")):
-        return True
-    return isinstance(value, tuple | list) and len(value) == 2 and all(np.ndim(part) == 2 for part in value)
-
-
 def _as_surface(value: Any, name: str) -> TriangleMesh | Floats:
-    return as_triangle_mesh(value) if _is_mesh(value) else _as_point_set(value, name, 3)
+    return as_triangle_mesh(value) if is_mesh_like(value) else _as_point_set(value, name, 3)
 
 
 def _as_point_set(points: Any, name: str, dimension: int | None = None) -> Floats:
