@@ -119,7 +119,7 @@ BAD = [
     (lambda: rinow.farthest_point_net(LINE, size=10), "size = 10 is outside 1..9, the number of points"),
     (lambda: rinow.farthest_point_net(LINE, radius=-1.0), "radius = -1.0 is not a radius; give"),
     (lambda: rinow.farthest_point_net(LINE, radius=math.nan), "radius = nan is not a radius; give"),
-    (lambda: rinow.farthest_point_net(LINE, size=2, start=9), "start[] = 9 is outside 0..8"),
+    (lambda: rinow.farthest_point_net(LINE, size=2, start=9), "start = 9 is outside 0..8"),
     (lambda: rinow.is_epsilon_net(LINE, [], 1.0), "indices has shape (0,); give one list of at least one index."),
     (lambda: rinow.is_epsilon_net(LINE, [9], 1.0), "indices[0] = 9 is outside 0..8"),
     (lambda: rinow.is_epsilon_net(LINE, [0], math.nan), "epsilon = nan is not a radius; give"),
