@@ -101,8 +101,9 @@ def _check_outputs(output: tuple[Path, ...], inputs: tuple[Path, Path], kind: Ki
     for path in output:
         if _is_table(path, kind):
             check_table(path, inputs=inputs)
-    if len({path.resolve() for path in output}) < len(output):
-        raise FileFormatError(f"{output[1]} is named twice as an output; choose another name.")
+    for i, path in enumerate(output):
+        if path.resolve() in {other.resolve() for other in output[:i]}:
+            raise FileFormatError(f"{path} is named twice as an output; choose another name.")
 
 
 def _write(output: tuple[Path, ...], study: ComparisonStudy, shapes: list[Any]) -> list[str]:

@@ -38,8 +38,8 @@ class ComparisonStudy:
         Name of the unit of length; "length" when nobody said.
     """
 
-    metric: str
-    kind: str
+    metric: Metric
+    kind: Kind
     result: HausdorffDistance
     seconds: float
     unit: str = "length"
