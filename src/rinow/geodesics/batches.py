@@ -8,6 +8,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.errors import InvalidMeshError
 from rinow.geodesics.unfolding import UnfoldedMesh
 from rinow.kernels import geodesic_rows
 from rinow.kernels.geodesics import new_balls
@@ -19,6 +20,7 @@ Indices = NDArray[np.intp]
 
 _ROOM = 4096, 4  # windows that may wait at first, at least and per vertex of the mesh; memory is touched only where
 # they do wait, and a source that needs more is computed again with four times as many
+_ROOM_AT_MOST = 64  # times the first room
 _PILOTS = 16  # sources of the first batch, spread evenly
 _ENTRIES = 1 << 24  # of a batch
 _BLOCK = 64  # neighbouring sources that a thread takes in a row
@@ -53,12 +55,22 @@ def distance_rows(u: UnfoldedMesh, sources: Indices, room: int = 0) -> Floats:
     geodesic_rows.rows_of_sources(u.surface, queries, *scratch, (u.order, u.unit), out, status)
     late = np.flatnonzero(status != geodesic_rows.DONE)
     if len(late):
+        _check_room(u, room, sources[late])
         out[late] = distance_rows(u, sources[late], 4 * room)
     return out
 
 
 def _first_room(u: UnfoldedMesh) -> int:
     return max(_ROOM[0], _ROOM[1] * len(u.order))
+
+
+def _check_room(u: UnfoldedMesh, room: int, late: Indices) -> None:
+    """Refuse to go on when windows multiply beyond any use, as they may between many sheets at one edge."""
+    if room > _ROOM_AT_MOST * _first_room(u):
+        raise InvalidMeshError(
+            f"the geodesics from vertex {late[0]} branch too often, at edges of three or more faces or in needles; "
+            "remove the surplus sheets or needles, or take method='edges'."
+        )
 
 
 def ball_rows(
@@ -76,6 +88,8 @@ def ball_rows(
         done = batch.status == geodesic_rows.DONE
         counts[chosen[done]] = batch.counts[done]
         queue = np.concatenate([chosen[~done], queue])
+        if (batch.status == geodesic_rows.NO_ROOM).any():
+            _check_room(u, size.room, sources[chosen[batch.status == geodesic_rows.NO_ROOM]])
         size = _next_size(batch, size)
         batches.append(batch)
     offsets = np.concatenate([[0], np.cumsum(counts)])

@@ -64,7 +64,8 @@ def geodesic_distances(
         If `sources` is not a list of vertices, `max_distance` is negative, nan or of another length, or `method` is
         unknown.
     InvalidMeshError
-        If `mesh` is no mesh, or has edge lengths only and `method` is ``"heat"``.
+        If `mesh` is no mesh, or has edge lengths only and `method` is ``"heat"``, or exact paths branch too often
+        between many sheets at edges of three or more faces.
     MissingDependencyError
         If `method` is ``"heat"`` and potpourri3d is not installed.
 

@@ -133,6 +133,8 @@ class ExactGeodesics:
 
         Raises
         ------
+        InvalidMeshError
+            If the paths branch too often to be followed, between many sheets at edges of three or more faces.
         InvalidInputError
             If `sources` is not a list of vertices, or `max_distance` is negative, nan or of another length.
         """
@@ -161,6 +163,8 @@ class ExactGeodesics:
 
         Raises
         ------
+        InvalidMeshError
+            If the paths branch too often to be followed, between many sheets at edges of three or more faces.
         InvalidInputError
             If `sources` is not a list of vertices, or `max_distance` is negative, nan or of another length.
         """
@@ -176,7 +180,7 @@ class ExactGeodesics:
         """Offsets, vertices, distances and directions; the ball of a source without a position is empty."""
         is_defined = ~undefined_vertices(self.mesh)[sources]
         asked = sources[is_defined], radii[is_defined]
-        offsets, *columns = ball_rows(self._unfolded, *asked, with_directions=with_directions)
+        offsets, vertices, distances, directions = ball_rows(self._unfolded, *asked, with_directions=with_directions)
         counts = np.zeros(len(sources), np.intp)
         counts[is_defined] = np.diff(offsets)
-        return np.concatenate([[0], np.cumsum(counts)]), *columns
+        return np.concatenate([[0], np.cumsum(counts)]), vertices, distances, directions

@@ -55,7 +55,7 @@ def unfold(mesh: TriangleMesh | IntrinsicMesh) -> UnfoldedMesh:
     Faces are turned so that neighbours agree.  Where that is impossible (a Möbius strip, an edge of three faces), the
     half-edges come twice, the second time seen from behind.
     """
-    t = mesh.topology
+    t = _without_repeated_faces(mesh.topology)
     order = patches.patch_order(t.neighbour_offsets, t.neighbours, _PATCH_SIZE)
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
@@ -73,6 +73,17 @@ def unfold(mesh: TriangleMesh | IntrinsicMesh) -> UnfoldedMesh:
     component_sizes[0] = 1  # vertices without a face
     surface = _surface(topology, halfedges, lengths, component_sizes[t.components[order] + 1])
     return UnfoldedMesh(surface, order, rank, unit)
+
+
+def _without_repeated_faces(t: Topology) -> Topology:
+    """Leave out faces at edges of three or more whose vertices are those of an earlier one: no path needs both."""
+    forked = np.flatnonzero((t.partners.reshape(-1, 3) == adjacency.NONMANIFOLD).any(axis=1))
+    first = np.unique(np.sort(t.faces[forked], axis=1), axis=0, return_index=True)[1]
+    if len(first) == len(forked):
+        return t
+    used = t.face_used.copy()
+    used[np.delete(forked, first)] = False
+    return Topology(t.faces, t.n_vertices, used)
 
 
 def _oriented_corners(flips: Bools) -> Indices:
@@ -105,7 +116,8 @@ def _shapes_from_lengths(lengths: Floats, angles: Floats) -> Shapes:
     opposite = np.maximum(lengths, tolerances.ZERO_EDGE)
     ab, ca, bc = opposite[:, [2, 0, 1]], opposite[:, [1, 2, 0]], opposite
     A, B = angles, angles[:, [1, 2, 0]]
-    return np.stack([ca / ab * np.exp(1j * A), -bc / ab * np.exp(-1j * B)], axis=-1).reshape(-1, 2)
+    shapes = np.stack([ca / ab * np.exp(1j * A), -bc / ab * np.exp(-1j * B)], axis=-1)
+    return shapes.reshape(-1, 2).astype(np.complex128)
 
 
 def _halfedges(topology: Topology, shapes: Shapes, *, two_sided: bool) -> Records:
@@ -165,12 +177,10 @@ def _fork(topology: Topology, across: Indices) -> tuple[Indices, Indices]:
 def _surface(topology: Topology, halfedges: Records, lengths: Floats, component_sizes: Indices) -> Surface:
     """Fans, kinds of vertices and the width of a shell."""
     n = topology.faces.size
-    z = halfedges["from_start"][:n]
+    angles = np.angle(halfedges["from_start"])  # also of rows seen from behind: fans of a Möbius strip run through them
     is_manifold = topology.vertex_is_manifold
     corners, vertices = np.zeros(n, fans.FAN), np.zeros(topology.n_vertices, fans.VERTEX)
-    fans.order_fans(
-        topology.corner_offsets, topology.vertex_corners, is_manifold, np.angle(z), halfedges, corners, vertices
-    )
+    fans.order_fans(topology.corner_offsets, topology.vertex_corners, is_manifold, angles, halfedges, corners, vertices)
     row = corners["row"]
     sides = lengths[:, [2, 0, 1]].ravel()
     corners["first_length"], corners["last_length"] = sides[row % n], sides[halfedges["previous"][row] % n]
@@ -180,6 +190,7 @@ def _surface(topology: Topology, halfedges: Records, lengths: Floats, component_
     vertices["kind"] = np.select(
         [~is_manifold, topology.vertex_is_boundary, is_saddle], [fans.SINGULAR, fans.BOUNDARY, fans.SADDLE], fans.PLAIN
     )
-    area = 0.5 * float(np.sum(sides[::3] ** 2 * z.imag[::3]))
+    area = 0.5 * float(np.sum(sides[::3] ** 2 * np.imag(halfedges["from_start"][:n:3])))
     n_used = max(int(topology.vertex_is_used.sum()), 1)
-    return Surface(halfedges, corners, vertices, _SHELL_WIDTH * max(math.sqrt(area / n_used), float(sides.mean())))
+    stride = _SHELL_WIDTH * max(math.sqrt(area / n_used), float(sides.mean()))
+    return Surface(halfedges, corners, vertices, stride, not bool(topology.edge_is_manifold.all()))

@@ -21,6 +21,7 @@ from rinow.kernels.windows import (
     comes_within,
     corner_window,
     entry_distance,
+    is_open,
     is_seen,
     lay_by,
     taken,
@@ -57,6 +58,8 @@ class Surface(NamedTuple):
     vertices: NDArray[np.void]
     stride: float
     """Width of a shell."""
+    branches: bool
+    """Whether three or more faces meet at some edge: windows then multiply, so that each is tested for a detour."""
 
 
 class Ball(NamedTuple):
@@ -245,8 +248,8 @@ def open_corners(surface, ball, waiting, slot, bearings, radius, depth):
             reach(ball, apex, surface.vertices[apex], distance, (last, -last), arrival, origin, radius)
         sides, angle = (first, last, opposite), fan["last"] - fan["first"]
         window = corner_window(np.intp(face["right"]), sides, angle, low - fan["first"], high - fan["first"])
-        if window.row >= 0 and cross(window.right, window.left) > 0.0 and comes_within(window, (radius - offset) ** 2):
-            depth = stacked(waiting, ball.counts, depth, window, offset, origin, False)
+        if window.row >= 0 and is_open(window) and comes_within(window, (radius - offset) ** 2):
+            depth = stacked(waiting, ball.counts, depth, window, offset, origin, surface.branches)
     return depth
 
 
@@ -292,7 +295,7 @@ def resume(surface, ball, waiting, radius, limit):
         waiting.deferred[i] = waiting.deferred[ball.counts[N_DEFERRED]]
         at_start, at_end, _ = known_distances(surface, ball, window.row)
         if not is_detour(window, offset, at_start, at_end):
-            lay_by(waiting.stack[0], window, offset, 0.0, origin, False)
+            lay_by(waiting.stack[0], window, offset, 0.0, origin, surface.branches)
             trace(surface, ball, waiting, 1, radius, limit)
 
 

@@ -93,6 +93,13 @@ def is_seen(window, point):
 
 
 @kernel
+def is_open(window):
+    """Whether the rays hold an angle between them, up to π: so wide is the corner of a vertex on the opposite edge."""
+    turn = cross(window.right, window.left)
+    return turn > 0.0 or (turn == 0.0 and dot(window.right, window.left) < 0.0)
+
+
+@kernel
 def nearest_ray(window):
     """Direction from the origin to the nearest point of the edge inside the cone."""
     foot = complex(-window.edge.imag, window.edge.real)
