@@ -15,6 +15,7 @@ _HOME = {
     "CurvatureFit": "embedding.point_set",
     "EmbeddingCurvatures": "embedding.quadruple",
     "FileFormatError": "errors",
+    "GromovHausdorff": "comparison.gromov_hausdorff",
     "IntrinsicMesh": "mesh",
     "InvalidInputError": "errors",
     "InvalidMeshError": "errors",
@@ -48,6 +49,7 @@ _HOME = {
     "robinson_curvature": "embedding.semidependent",
     "semidependent_order": "embedding.semidependent",
     "star_curvature": "embedding.star",
+    "gromov_hausdorff": "comparison.gromov_hausdorff",
 }
 
 __all__ = ["__version__", *sorted(_HOME)]  # pyright: ignore[reportUnsupportedDunderAll]

@@ -1,5 +1,7 @@
 from rinow import errors as errors
 from rinow._version import __version__ as __version__
+from rinow.comparison.gromov_hausdorff import GromovHausdorff as GromovHausdorff
+from rinow.comparison.gromov_hausdorff import gromov_hausdorff as gromov_hausdorff
 from rinow.curvature.alt import alt_curvature as alt_curvature
 from rinow.curvature.curves import curve_curvature as curve_curvature
 from rinow.curvature.haantjes import arc_length as arc_length
