@@ -18,6 +18,7 @@ _HOME = {
     "GromovHausdorff": "comparison.gromov_hausdorff",
     "IntrinsicMesh": "mesh",
     "InvalidInputError": "errors",
+    "LipschitzDistance": "comparison.lipschitz",
     "InvalidMeshError": "errors",
     "MissingDependencyError": "errors",
     "MetricSpace": "metric_space",
@@ -49,7 +50,11 @@ _HOME = {
     "robinson_curvature": "embedding.semidependent",
     "semidependent_order": "embedding.semidependent",
     "star_curvature": "embedding.star",
+    "dilatation": "comparison.lipschitz",
+    "distortion": "comparison.correspondence",
     "gromov_hausdorff": "comparison.gromov_hausdorff",
+    "lipschitz_distance": "comparison.lipschitz",
+    "uniform_distance": "comparison.correspondence",
 }
 
 __all__ = ["__version__", *sorted(_HOME)]  # pyright: ignore[reportUnsupportedDunderAll]

@@ -8,7 +8,7 @@ from itertools import permutations
 
 
 def least_distortion(DX, DY):
-    """Twice the Gromov-Hausdorff distance: images are given one point after the other while they stay below the best."""
+    """Twice the Gromov-Hausdorff distance: one image after the other is tried while it stays below the best."""
     n, m = len(DX), len(DY)
     places = [p for k in range(max(n, m)) for p in (("f", k), ("g", k)) if k < (n if p[0] == "f" else m)]
     best = max(max(map(max, DX)), max(map(max, DY)))

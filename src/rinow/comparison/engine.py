@@ -170,7 +170,7 @@ class Search:
         self._problem = correspondence_search.Problem(
             engine.X, engine.Y, self.state.runs, engine.both, *(isometries or trivial)
         )
-        self._progress = np.zeros(6, np.int64)
+        self._progress = np.zeros(7, np.int64)
         self._progress[correspondence_search.DESCENDING] = 1
         self._progress[correspondence_search.LIMIT] = FIRST_LIMIT
         self._f, self._g = np.empty(n, np.int64), np.empty(m, np.int64)
@@ -192,6 +192,14 @@ class Search:
             if status == correspondence_search.FOUND:
                 return False, self._pairs()
         return False, None
+
+    @property
+    def depth_of_proof(self) -> int:
+        """How many isometries a chain of refutations may use one after the other.
+
+        Each leads to a deeper decision, or at the root to an earlier refutation.
+        """
+        return sum(self.engine.shape) + int(self._progress[correspondence_search.REFUTED])
 
     def possible(self) -> Flags:
         """Pairs not refuted at the root: what a relation within the level may contain."""

@@ -107,10 +107,11 @@ def gromov_hausdorff(X: Any, Y: Any, *, time_limit: float = 60.0, rtol: float = 
     DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
     interval = first_interval(DX, DY, rtol)
     if not interval.closed and not clock.over:
-        _close(Engine(DX, DY), interval, clock)
-    return GromovHausdorff(
-        0.5 * interval.lower, 0.5 * interval.upper, interval.lower == interval.upper, interval.pairs, interval.by
-    )
+        engine = Engine(DX, DY)
+        interval.raise_lower(engine.row_bound, "sorted distances")
+        interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
+        steps.close(engine, interval, clock)
+    return GromovHausdorff(0.5 * interval.lower, 0.5 * interval.upper, interval.exact, interval.pairs, interval.by)
 
 
 def first_interval(DX: Floats, DY: Floats, rtol: float) -> Interval:
@@ -131,17 +132,3 @@ def _monotone(xs: Indices, ys: Indices) -> Indices:
     """Pairs that run through two lists at the same pace."""
     k = max(len(xs), len(ys))
     return np.stack([xs[np.arange(k) * len(xs) // k], ys[np.arange(k) * len(ys) // k]], axis=1)
-
-
-def _close(engine: Engine, interval: Interval, clock: Clock) -> None:
-    """All steps in turn until the interval is closed or the time is over."""
-    n, m = engine.shape
-    interval.raise_lower(engine.row_bound, "sorted distances")
-    interval.raise_lower(bounds.packing_bound(engine.DX, engine.DY), "packing")
-    steps.warm_start(engine, interval, clock.part(0.2 * clock.left), n_starts=4, n_moves=20 * (n + m))
-    if interval.closed:
-        return
-    possible = steps.branch_and_bound(engine, interval, clock.part(0.25 * clock.left))
-    if not interval.closed:
-        steps.bisect_by_consistency(engine, interval, clock.part(0.5 * clock.left))
-        steps.branch_and_bound(engine, interval, clock, possible)

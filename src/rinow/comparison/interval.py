@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow import tolerances
 from rinow.comparison.engine import Engine
 
 __all__ = ["Interval", "next_difference"]
@@ -26,7 +27,12 @@ class Interval:
     @property
     def closed(self) -> bool:
         """Whether the interval is as short as was asked for."""
-        return self.upper - self.lower <= self.rtol * self.upper
+        return self.upper - self.lower <= max(self.rtol, tolerances.EXACT) * self.upper
+
+    @property
+    def exact(self) -> bool:
+        """Whether the bounds are equal, up to the rounding of isometries that a proof used."""
+        return self.upper - self.lower <= tolerances.EXACT * self.upper
 
     @property
     def wanted(self) -> float:
@@ -38,9 +44,12 @@ class Interval:
         if value > self.lower:
             self.lower, self.by = min(value, self.upper), by
 
-    def refuted(self, level: float, engine: Engine, by: str) -> None:
-        """Take note that no relation fits a level: the bound is the next level that two distances can have."""
-        self.raise_lower(next_difference(engine, level), by)
+    def refuted(self, level: float, engine: Engine, by: str, error: float = 0.0) -> None:
+        """Take note that no relation fits a level: the bound is the next level that two distances can have.
+
+        It is lower by the error of a proof that used isometries up to rounding.
+        """
+        self.raise_lower(min(next_difference(engine, level), self.upper) - error, by)
 
     def offer(self, pairs: Indices, value: float) -> bool:
         """Take a relation if it is better than the best one."""

@@ -7,7 +7,7 @@ from numba import config
 from numba.core import types
 from numba.extending import intrinsic
 
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels._jit import kernel
 
 ONE, ZERO, SIX, LOW = np.uint64(1), np.uint64(0), np.uint64(6), np.uint64(63)
 
@@ -75,10 +75,10 @@ def size(words):
     return total
 
 
-@parallel_kernel
+@kernel
 def prefixes(order, out):
     """Write to out[i, k] the set of the first k points of order[i]."""
-    for i in prange(order.shape[0]):
+    for i in range(order.shape[0]):
         out[i, 0] = ZERO
         for k in range(order.shape[1]):
             out[i, k + 1] = out[i, k]

@@ -11,9 +11,9 @@ from rinow.kernels.correspondences import clear, delete, mark_all, propagate, re
 PAUSED, FOUND, EXHAUSTED = 0, 1, 2
 """Why a search returns: its budget is spent; it stands at a relation that fits; there is none, or none other."""
 
-DEPTH, DESCENDING, VERSION, NODES, LIMIT, TOTAL = range(6)
+DEPTH, DESCENDING, VERSION, NODES, LIMIT, TOTAL, REFUTED = range(7)
 """Places in the progress of a search: decisions made; whether it goes down; number of changes of the level; nodes since
-the last restart, and how many are allowed; nodes in all."""
+the last restart, and how many are allowed; nodes in all; pairs refuted at the root."""
 
 
 class Stack(NamedTuple):
@@ -81,6 +81,8 @@ def _backtrack(problem, relation, queue, stack, progress, weights):
     """Undo the last decision and take its pair, with the images under isometries, out of what is possible; the work."""
     progress[DEPTH] -= 1
     depth = progress[DEPTH]
+    if depth == 0:
+        progress[REFUTED] += 1
     alive = _recall(problem, relation, queue, stack, progress)
     _refute(problem, relation, queue, stack, depth)
     alive = alive and relation.row_counts.min() > 0 and (not problem.both or relation.column_counts.min() > 0)
