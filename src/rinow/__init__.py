@@ -20,8 +20,10 @@ _HOME = {
     "FarthestPointNet": "nets.farthest_point",
     "HausdorffDistance": "comparison.hausdorff",
     "GeodesicBalls": "geodesics.exact",
+    "GromovHausdorff": "comparison.gromov_hausdorff",
     "IntrinsicMesh": "mesh",
     "InvalidInputError": "errors",
+    "LipschitzDistance": "comparison.lipschitz",
     "InvalidMeshError": "errors",
     "MissingDependencyError": "errors",
     "MetricSpace": "metric_space",
@@ -62,6 +64,11 @@ _HOME = {
     "midpoints": "geodesics.length_space",
     "geodesic_distances": "geodesics.distances",
     "geodesic_space": "geodesics.distances",
+    "dilatation": "comparison.lipschitz",
+    "distortion": "comparison.correspondence",
+    "gromov_hausdorff": "comparison.gromov_hausdorff",
+    "lipschitz_distance": "comparison.lipschitz",
+    "uniform_distance": "comparison.correspondence",
 }
 
 __all__ = ["__version__", *sorted(_HOME)]  # pyright: ignore[reportUnsupportedDunderAll]

@@ -1,7 +1,14 @@
 from rinow import errors as errors
 from rinow._version import __version__ as __version__
+from rinow.comparison.correspondence import distortion as distortion
+from rinow.comparison.correspondence import uniform_distance as uniform_distance
+from rinow.comparison.gromov_hausdorff import GromovHausdorff as GromovHausdorff
+from rinow.comparison.gromov_hausdorff import gromov_hausdorff as gromov_hausdorff
 from rinow.comparison.hausdorff import HausdorffDistance as HausdorffDistance
 from rinow.comparison.hausdorff import hausdorff_distance as hausdorff_distance
+from rinow.comparison.lipschitz import LipschitzDistance as LipschitzDistance
+from rinow.comparison.lipschitz import dilatation as dilatation
+from rinow.comparison.lipschitz import lipschitz_distance as lipschitz_distance
 from rinow.curvature.alt import alt_curvature as alt_curvature
 from rinow.curvature.curves import curve_curvature as curve_curvature
 from rinow.curvature.haantjes import arc_length as arc_length
