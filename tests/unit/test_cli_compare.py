@@ -79,6 +79,34 @@ def test_a_point_cloud_needs_no_faces(folder, capfd):
     assert json.loads(out)["directed_a"] == [1.0, 1.0]
 
 
+def test_distance_matrices(folder, capfd):
+    code, out, err = run(capfd, "compare", "d.npz", "e.npy", "--distances", "--json", "-o", "pairs.csv")
+    assert (code, err) == (0, "")
+    record = json.loads(out)
+    X, Y = rinow.MetricSpace([[0, 1, 3], [1, 0, 2], [3, 2, 0]]), rinow.MetricSpace([[0, 1], [1, 0]])
+    assert record["metric"] == "gromov-hausdorff"
+    assert record["exact"]
+    assert record["upper"] == rinow.gromov_hausdorff(X, Y).upper == 0.5 * rinow.distortion(record["pairs"], X, Y) == 1.0
+    rows = (folder / "pairs.csv").read_text().splitlines()
+    assert rows[1] == "a,b"
+    assert [[int(x) for x in row.split(",")] for row in rows[2:]] == record["pairs"]
+    code, out, _ = run(capfd, "compare", "d.npz", "e.npy", "--distances", "--metric", "lipschitz", "--json")
+    assert code == 0
+    assert json.loads(out)["upper"] is None  # infinite: the sizes differ
+    code, out, _ = run(capfd, "compare", "p.csv", "p.csv", "--points", "--metric", "lipschitz")
+    assert code == 0
+    assert "0 <= distance <= 0;" in out
+
+
+def test_surfaces_by_their_inner_distances(folder, capfd):
+    code, out, _ = run(capfd, "compare", "a.ply", "b.obj", "--metric", "lipschitz", "--json", "--time-limit", "20")
+    record = json.loads(out)
+    assert code == 0
+    assert record["unit"] == "1"
+    assert record["lower"] <= np.log(2) + 1e-12
+    assert record["upper"] >= np.log(2) - 1e-12
+
+
 def test_net(folder, capfd):
     s = icosphere(2)
     rinow.write_mesh("s.ply", (s.vertices, s.faces))
@@ -119,7 +147,7 @@ BAD = [
     (["compare", "a.ply", "b.obj", "-o", "no_folder/o.csv"], "does not exist"),
     (["compare", "p.csv", "q.txt", "--points", "-o", "o.ply"], "neither suffix .csv nor .npz"),
     (["compare", "a.ply", "b.obj", "-o", "o.csv", "-o", "o.csv"], "named twice"),
-    (["compare", "a.ply", "b.obj", "-o", "1.csv", "-o", "2.csv", "-o", "3.csv"], "third output"),
+    (["compare", "a.ply", "b.obj", "-o", "1.csv", "-o", "2.csv", "-o", "3.csv"], "3.csv is one output too many"),
     (["net", "a.ply"], "size and radius are both missing"),
     (["net", "a.ply", "--size", "9"], "size = 9 is outside 1..8"),
     (["net", "a.ply", "--size", "2", "--start", "8"], "start = 8 is outside 0..7"),
