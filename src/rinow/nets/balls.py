@@ -14,7 +14,7 @@ from scipy.sparse import csr_matrix
 from rinow.geodesics.exact import ExactGeodesics
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
-__all__ = ["BallOf", "covers", "mesh_balls", "space_balls", "surface_vertices"]
+__all__ = ["BallOf", "covers", "mesh_balls", "space_balls", "surface_radius_of", "surface_vertices"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -67,3 +67,13 @@ def covers(mesh: TriangleMesh | IntrinsicMesh, sources: Indices, radius: float) 
         rows = csr_matrix(geodesics.distances(sources[first : first + _SOURCES_AT_ONCE], max_distance=radius))
         bare[rows.indices] = False
     return not bare[surface_vertices(mesh)].any()
+
+
+def surface_radius_of(mesh: TriangleMesh | IntrinsicMesh, distances: Floats) -> float:
+    """Bound of the distance of any point of a surface from a net, by the distances of the vertices from it.
+
+    No point of a triangle is farther than its longest side / √3 from all three corners.
+    """
+    used = mesh.topology.face_used
+    far = distances[mesh.faces[used]].max(axis=1) + mesh.edge_lengths[used].max(axis=1) / math.sqrt(3.0)
+    return float(far.max(initial=0.0))

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from rinow import tolerances
 from rinow._arrays import as_indices
 from rinow.errors import InvalidInputError
-from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh, is_mesh_like
+from rinow.mesh import as_mesh, is_mesh_like
 from rinow.metric_space import as_metric_space
-from rinow.nets.balls import BallOf, covers, mesh_balls, space_balls, surface_vertices
+from rinow.nets.balls import BallOf, covers, mesh_balls, space_balls, surface_radius_of, surface_vertices
 
 __all__ = ["FarthestPointNet", "farthest_point_net", "is_epsilon_net"]
 
@@ -122,8 +122,8 @@ def farthest_point_net(
         ball_of, n_points, candidates, first, limit, -1.0 if radius is None else radius
     )
     reached = float(radii[-1])
-    surface_radius = reached if mesh is None else _surface_radius(mesh, distances)
-    return FarthestPointNet(indices, reached, labels, distances, radii, surface_radius)
+    within = reached if mesh is None else surface_radius_of(mesh, distances)
+    return FarthestPointNet(indices, reached, labels, distances, radii, within)
 
 
 def _as_size(size: int | None, radius: float | None, n_points: int) -> int:
@@ -158,13 +158,6 @@ def _grow(
         radii.append(reached)
         if len(indices) == limit or reached <= radius:
             return np.array(indices), np.array(radii), distances, labels
-
-
-def _surface_radius(mesh: TriangleMesh | IntrinsicMesh, distances: Floats) -> float:
-    """Bound over the faces: no point of a triangle is farther than longest side / √3 from all three corners."""
-    used = mesh.topology.face_used
-    far = distances[mesh.faces[used]].max(axis=1) + mesh.edge_lengths[used].max(axis=1) / math.sqrt(3.0)
-    return float(far.max(initial=0.0))
 
 
 def is_epsilon_net(space_or_mesh: Any, indices: ArrayLike, epsilon: float) -> bool:
