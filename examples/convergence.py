@@ -72,12 +72,12 @@ def main() -> None:
     """All three surfaces."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
     spheres = [sphere(n) for n in (50, 150, 450, 1350)]
-    report("sphere against one of 4,000 vertices", study_meshes(spheres, sphere(4000), max_points=1350), folder)
+    report("sphere against one of 4,000 vertices", study_meshes(spheres, sphere(4000), max_points=1700), folder)
     tori = [torus(n) for n in (8, 12, 18, 26)]
-    report("torus against one of 4,000 vertices", study_meshes(tori, torus(40), max_points=1350), folder)
+    report("torus against one of 4,000 vertices", study_meshes(tori, torus(40), max_points=1700), folder)
     spot = demo_mesh()
     meshes = [simplified(spot, cells) for cells in (8, 14, 24, 40)]
-    report("spot and its simplifications", study_meshes(meshes, spot, max_points=1350), folder)
+    report("spot and its simplifications", study_meshes(meshes, spot, max_points=1700), folder)
 
 
 if __name__ == "__main__":
