@@ -19,6 +19,17 @@ def centre(piece, n):
 
 
 @kernel
+def area(piece, n):
+    """Area of a flat piece."""
+    x, y, z = 0.0, 0.0, 0.0
+    for i in range(2, n):
+        ax, ay, az = piece[i - 1, 0] - piece[0, 0], piece[i - 1, 1] - piece[0, 1], piece[i - 1, 2] - piece[0, 2]
+        bx, by, bz = piece[i, 0] - piece[0, 0], piece[i, 1] - piece[0, 1], piece[i, 2] - piece[0, 2]
+        x, y, z = x + ay * bz - az * by, y + az * bx - ax * bz, z + ax * by - ay * bx
+    return 0.5 * math.sqrt(x * x + y * y + z * z)
+
+
+@kernel
 def reach(piece, n, corners, t, error):
     """Greatest distance of a piece from one triangle: at a corner, since the distance from a convex set is convex.
 

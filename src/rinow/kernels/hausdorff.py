@@ -13,10 +13,15 @@ import numpy as np
 from rinow.kernels import box_trees
 from rinow.kernels._jit import kernel, parallel_kernel, prange
 from rinow.kernels.box_trees import nearest_triangle
-from rinow.kernels.convex_pieces import CORNERS, FEW, ROOM, centre, copy, cut, halve, reach, side_plane
+from rinow.kernels.convex_pieces import CORNERS, FEW, ROOM, area, centre, copy, cut, halve, reach, side_plane
 
 BLOCKS = 64
 """Shares of the work; more than threads, so that hard and easy ones mix."""
+
+
+SHARE, AGE = 1.0 / 32.0, 6
+"""A piece is carved when at least this share of it is settled thereby, and so many times in a row at most: pieces that
+stand upright on their triangle would become ever narrower, but never shorter."""
 
 
 class Pieces(NamedTuple):
@@ -25,6 +30,7 @@ class Pieces(NamedTuple):
     corners: np.ndarray  # (ROOM, CORNERS, 3)
     counts: np.ndarray  # (ROOM,): corners of each
     hints: np.ndarray  # (ROOM,): a triangle near each
+    ages: np.ndarray  # (ROOM,): times that each was carved since it was last halved
     work: np.ndarray  # (3, CORNERS, 3)
     plane: np.ndarray  # (4,)
     stack: np.ndarray
@@ -36,6 +42,7 @@ def room_for_pieces():
     """Memory for one thread."""
     return Pieces(
         np.empty((ROOM, CORNERS, 3)),
+        np.empty(ROOM, np.intp),
         np.empty(ROOM, np.intp),
         np.empty(ROOM, np.intp),
         np.empty((3, CORNERS, 3)),
@@ -76,19 +83,20 @@ def settle(pieces, top, tree, t, goal, gap, error):
     Where triangle t is not enough the piece is halved and the distance is 0, for nothing was settled.
     """
     top -= 1
-    n, work = pieces.counts[top], pieces.work
+    n, age, work = pieces.counts[top], pieces.ages[top], pieces.work
     far = reach(pieces.corners[top], n, tree.corners, t, error)
     if far <= goal or top + 4 > ROOM:
         return top, far
-    slack = 0.5 * math.sqrt(max(goal * goal - gap, 0.0))
+    slack, least = 0.5 * math.sqrt(max(goal * goal - gap, 0.0)), SHARE * area(pieces.corners[top], n)
     for _ in range(2):
-        if n > FEW:
+        if n > FEW or age >= AGE:
             break
         copy(pieces.corners[top], n, work[0])
         copy(pieces.corners[top], n, work[2])
         m, height = carve(pieces, top, n, tree, t, slack)
         far = reach(work[0], m, tree.corners, t, error)
-        if far <= goal:
+        if far <= goal and area(work[0], m) > least:
+            pieces.ages[top:height] = age + 1
             return height, far
         copy(work[2], n, pieces.corners[top])
         slack = 0.0
@@ -96,7 +104,7 @@ def settle(pieces, top, tree, t, goal, gap, error):
     for m, half in ((below, work[0]), (above, work[1])):
         if m > 0:
             copy(half, m, pieces.corners[top])
-            pieces.counts[top], pieces.hints[top] = m, t
+            pieces.counts[top], pieces.hints[top], pieces.ages[top] = m, t, 0
             top += 1
     return top, 0.0
 
@@ -116,7 +124,7 @@ def bound_triangle(corners, i, tree, hints, lower, tolerance, error, pieces, poi
         upper = min(upper, reach(pieces.corners[0], n, tree.corners, hints[k], error))
     if upper <= lower + tolerance:
         return lower, upper, 0
-    pieces.counts[0], pieces.hints[0], upper = n, hints[0], 0.0
+    pieces.counts[0], pieces.hints[0], pieces.ages[0], upper = n, hints[0], 0, 0.0
     while top > 0:
         x, y, z = centre(pieces.corners[top - 1], pieces.counts[top - 1])
         gap, t = nearest_triangle(tree, x, y, z, pieces.hints[top - 1], pieces.stack, pieces.gaps)
