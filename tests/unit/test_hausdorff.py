@@ -1,7 +1,9 @@
 """Hausdorff distance: closed forms, witnesses, imperfect meshes, and every refusal."""
 
+import json
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -198,6 +200,16 @@ def test_a_finer_tolerance_narrows_the_interval():
         widths.append(result.upper - result.lower)
         assert widths[-1] <= tolerance * 2 * 3**0.5
     assert widths == sorted(widths, reverse=True)
+
+
+def test_pieces_that_stand_upright_on_their_triangle_come_to_an_end():
+    """Two crossing soups, found at random: carving alone made pieces ever narrower, but never shorter."""
+    with (Path(__file__).parents[1] / "golden" / "hausdorff_upright.json").open() as file:
+        A, B = ((np.array(m["vertices"]), np.array(m["faces"])) for m in json.load(file).values())
+    coarse = rinow.hausdorff_distance(A, B, tolerance=1e-3)
+    fine = rinow.hausdorff_distance(A, B, tolerance=1e-6)
+    assert coarse.lower <= fine.lower <= fine.upper <= coarse.upper
+    assert fine.upper - fine.lower <= 1e-6 * 4
 
 
 # ------------------------------------------------------------------ refusals
