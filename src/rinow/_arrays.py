@@ -60,8 +60,8 @@ def as_indices(values: ArrayLike, n: int, name: str) -> Indices:
     wrong = (array < 0) | (array >= n)
     if wrong.any():
         place = tuple(int(i) for i in np.argwhere(wrong)[0])
-        where = ", ".join(map(str, place))
-        raise InvalidInputError(f"{name}[{where}] = {array[place]} is outside 0..{n - 1}; indices count from 0.")
+        where = f"[{', '.join(map(str, place))}]" if place else ""
+        raise InvalidInputError(f"{name}{where} = {array[place]} is outside 0..{n - 1}; indices count from 0.")
     return np.ascontiguousarray(array, np.intp) if array.ndim else np.asarray(array, np.intp)
 
 

@@ -17,7 +17,7 @@ from rinow.errors import InvalidInputError, InvalidMeshError
 from rinow.kernels import triangles
 from rinow.topology import Topology
 
-__all__ = ["IntrinsicMesh", "TriangleMesh", "as_mesh", "as_triangle_mesh"]
+__all__ = ["IntrinsicMesh", "TriangleMesh", "as_mesh", "as_triangle_mesh", "is_mesh_like"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -325,6 +325,13 @@ def _as_faces(faces: ArrayLike, n_vertices: int | None) -> Indices:
         raise InvalidMeshError(f"faces has shape {array.shape}; split quadrilaterals into triangles first.")
     F = as_index_tuples(array, width=3, n_points=n, name="faces")
     return read_only(np.array(F, order="C"))
+
+
+def is_mesh_like(value: Any) -> bool:
+    """Whether `as_mesh` is meant: a mesh, an object with faces, or a pair of two tables."""
+    if any(hasattr(value, name) for name in ("faces", "regular_faces")):
+        return True
+    return isinstance(value, tuple | list) and len(value) == 2 and all(np.ndim(part) == 2 for part in value)
 
 
 def as_mesh(mesh: Any) -> TriangleMesh | IntrinsicMesh:

@@ -46,3 +46,7 @@ DETOUR = 1e-12
 
 ZERO_EDGE = 1e-60
 """An edge below this share of the longest one is a point: still far from underflow when its length is squared twice."""
+
+EXACT = 1e-12
+"""Two bounds are one value when they differ by this share: rounding of the isometries that a proof used; one without
+makes them equal."""

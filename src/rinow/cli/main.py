@@ -24,6 +24,8 @@ app.command("rinow.cli.demo:demo")
 app.command("rinow.cli.info:info")
 app.command("rinow.cli.curvature:curvature")
 app.command("rinow.cli.quadruple:quadruple")
+app.command("rinow.cli.compare:compare")
+app.command("rinow.cli.net:net")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

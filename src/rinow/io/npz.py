@@ -18,7 +18,7 @@ from rinow.io.fields import Fields, Units, units_text
 from rinow.io.polygons import Runs, surface_triangles
 from rinow.mesh import TriangleMesh
 
-__all__ = ["read_npz", "write_npz"]
+__all__ = ["read_arrays", "read_npz", "write_npz"]
 
 _RESERVED = ("V", "F", "units")
 
@@ -41,10 +41,7 @@ def read_npz(path: Path) -> TriangleMesh:
     FileFormatError
         If an array is missing, pickled or truncated, or an index has a fault.
     """
-    if not zipfile.is_zipfile(path):
-        raise FileFormatError("the file is no NPZ archive, or it is truncated; write it again.")
-    with zipfile.ZipFile(path) as archive:
-        arrays = {info.filename.removesuffix(".npy"): _read_array(archive, info) for info in archive.infolist()}
+    arrays = read_arrays(path)
     missing = [name for name in ("V", "F") if name not in arrays]
     if missing:
         raise FileFormatError(f"the archive holds {', '.join(arrays)} but no {missing[0]}; V and F are needed.")
@@ -62,6 +59,20 @@ def read_npz(path: Path) -> TriangleMesh:
             f"arrays of another length were left out: {', '.join(sorted(rest.keys() - fields))}.",
         )
     return TriangleMesh(V, faces, fields, notes)
+
+
+def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
+    """All arrays of an archive, none of them pickled.
+
+    Raises
+    ------
+    FileFormatError
+        If the file is no archive, or an array is pickled or truncated.
+    """
+    if not zipfile.is_zipfile(path):
+        raise FileFormatError("the file is no NPZ archive, or it is truncated; write it again.")
+    with zipfile.ZipFile(path) as archive:
+        return {info.filename.removesuffix(".npy"): _read_array(archive, info) for info in archive.infolist()}
 
 
 def _read_array(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> NDArray[Any]:

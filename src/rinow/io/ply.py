@@ -17,7 +17,7 @@ from rinow.io.ply_header import Element, Header, read_header
 from rinow.io.polygons import Runs, surface_triangles
 from rinow.mesh import TriangleMesh
 
-__all__ = ["read_ply", "write_ply"]
+__all__ = ["read_ply", "read_ply_points", "write_ply"]
 
 Indices = NDArray[np.intp]
 
@@ -73,6 +73,19 @@ def read_ply(path: Path) -> TriangleMesh:
     if rest:
         notes = (*notes, f"{rest} bytes after the last element were left unread.")
     return TriangleMesh(vertices, faces, fields, notes)
+
+
+def read_ply_points(path: Path) -> NDArray[np.float64]:
+    """(n_vertices, 3): the positions of a PLY file, whether it has faces or not.
+
+    Raises
+    ------
+    FileFormatError
+        If the header or the data has a fault.
+    """
+    header = read_header(path)
+    columns, _ = _all_columns(body_bytes(path, header), header)
+    return _vertices(columns["vertex"], _element(header, "vertex"), text=header.byte_order is None)[0]
 
 
 def _all_columns(data: NDArray[np.uint8], header: Header) -> tuple[dict[str, dict[str, Runs]], int]:

@@ -1,0 +1,151 @@
+"""`rinow compare`: the distance of two shapes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from rinow._version import __version__
+from rinow.cli._terminal import print_counts, print_json, print_notes, working
+from rinow.comparison.hausdorff import HausdorffDistance
+from rinow.errors import FileFormatError, InvalidInputError
+from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.tables import check_table, read_distances, read_points, write_columns
+from rinow.mesh import TriangleMesh
+from rinow.study.comparison import ComparisonStudy, Kind, Metric, compare_shapes
+
+__all__ = ["compare"]
+
+
+def compare(
+    a: Path,
+    b: Path,
+    /,
+    *,
+    metric: Metric | None = None,
+    points: bool = False,
+    distances: bool = False,
+    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"])] = (),
+    tolerance: float = 1e-4,
+    time_limit: float = 60.0,
+    unit: str = "length",
+    json: bool = False,
+) -> None:
+    """Bound the distance of two meshes, point sets or distance matrices from below and from above.
+
+    Parameters
+    ----------
+    a, b
+        Two mesh files; with --points or --distances tables as CSV, NPY or NPZ.
+    metric
+        The distance; by default Hausdorff, for distance matrices Gromov-Hausdorff.
+    points
+        Compare point sets: rows of the tables, or the vertices of mesh files.
+    distances
+        Compare finite metric spaces: the tables are square matrices of distances.
+    output
+        Hausdorff: file for the distance of each vertex or point of A, given a second time for those of B; a mesh file
+        or a table (.csv, .npz).  Other distances: one table of the pairs or of the map that attains the upper bound.
+    tolerance
+        Hausdorff distance of surfaces: greatest width of the interval, relative to the diagonal.
+    time_limit
+        Other distances: seconds after which to stop with the interval reached.
+    unit
+        Name of the unit of length of the files, such as mm.
+    json
+        Print one JSON object instead of a table.
+    """
+    if points and distances:
+        raise InvalidInputError("--points and --distances exclude each other; say what the files hold.")
+    kind: Kind = "points" if points else "distances" if distances else "surfaces"
+    distance: Metric = metric or ("gromov-hausdorff" if distances else "hausdorff")
+    _check_outputs(output, (a, b), kind, distance)
+    shapes: list[Any] = []
+    for path in (a, b):
+        with working(f"reading {path.name}"):
+            shapes.append(_read(path, kind))
+    with working("comparing"):
+        study = compare_shapes(
+            *shapes,
+            metric=distance,
+            kind=kind,
+            tolerance=tolerance,
+            time_limit=time_limit,
+            unit=unit,
+        )
+    notes = [note for shape in shapes if isinstance(shape, TriangleMesh) for note in shape.notes]
+    notes += _write(output, study, shapes)
+    record = {"a": str(a), "b": str(b), **study.record()}
+    if json:
+        print_json({"rinow": __version__, **record, "outputs": [str(path) for path in output], "notes": notes})
+    else:
+        _print(record, notes)
+
+
+def _read(path: Path, kind: Kind) -> Any:
+    if kind == "surfaces":
+        return read_mesh(path)
+    return read_points(path) if kind == "points" else read_distances(path)
+
+
+def _check_outputs(output: tuple[Path, ...], inputs: tuple[Path, Path], kind: Kind, metric: Metric) -> None:
+    """Refuse outputs that could not be written later."""
+    most = 2 if metric == "hausdorff" else 1
+    if len(output) > most:
+        raise FileFormatError(f"{output[most]} is one output too many; the {metric} distance has {most}.")
+    check_outputs([path for path in output if not _is_table(path, kind, metric)], inputs=inputs)
+    for path in output:
+        if _is_table(path, kind, metric):
+            check_table(path, inputs=inputs)
+    for i, path in enumerate(output):
+        if path.resolve() in {other.resolve() for other in output[:i]}:
+            raise FileFormatError(f"{path} is named twice as an output; choose another name.")
+
+
+def _is_table(path: Path, kind: Kind, metric: Metric) -> bool:
+    """Whether an output is a table; NPZ holds a mesh where distances belong to the vertices of meshes."""
+    return path.suffix.lower() == ".csv" or kind != "surfaces" or metric != "hausdorff"
+
+
+def _write(output: tuple[Path, ...], study: ComparisonStudy, shapes: list[Any]) -> list[str]:
+    """What the outputs are for; returns what a format could not carry."""
+    result, notes = study.result, list[str]()
+    if not isinstance(result, HausdorffDistance):
+        for path in output:
+            a, b = study.pairs().T
+            write_columns(path, {"a": a, "b": b}, "points of A and B that belong together in the upper bound")
+        return notes
+    sides = zip(output, shapes, (result.distances_a, result.distances_b), "BA", strict=False)
+    for path, shape, values, other in sides:
+        meaning = f"distance from {other}, unit {study.unit}"
+        with working(f"writing {path.name}"):
+            if _is_table(path, study.kind, study.metric):
+                write_columns(path, {"distance": values}, meaning)
+            else:
+                units = {"distance": meaning}
+                notes += write_mesh(path, shape, {"distance": values}, units=units, quality="distance")
+    return notes
+
+
+def _print(record: dict[str, Any], notes: list[str]) -> None:
+    """A table of the interval, and what proves it."""
+    rows = {name: record[name] for name in ("lower", "upper")}
+    if "witness_a" in record:
+        for side in "ab":
+            levels = record[f"percentiles_{side}"]
+            rows[f"median distance from {side} to the other set"] = levels["50"]
+            rows[f"95 % of the distances from {side} are below"] = levels["95"]
+        proof = f"attained between {_place(record['witness_a'])} in a and {_place(record['witness_b'])} in b"
+    else:
+        proof = f"proved by {record['lower_bound_by']}; {len(record['pairs'])} pairs attain the upper one"
+    unit = "" if record["unit"] == "1" else " " + record["unit"]
+    print_counts(f"{record['metric']} distance of {record['a']} and {record['b']}, unit {record['unit']}", rows)
+    interval = f"{record['lower']:.9g} <= distance <= {record['upper']:.9g}{unit}"
+    print_notes((f"{interval}; the lower bound is {proof}; {record['seconds']:.2f} s.", *notes))
+
+
+def _place(witness: int | list[float]) -> str:
+    """A witness in words."""
+    return str(witness) if isinstance(witness, int) else "(" + ", ".join(f"{x:.6g}" for x in witness) + ")"

@@ -1,0 +1,101 @@
+"""`rinow net`: farthest points on a surface."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from cyclopts import Parameter
+
+from rinow._version import __version__
+from rinow.cli._terminal import print_counts, print_json, print_notes, working
+from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.tables import check_table, write_columns
+from rinow.nets.farthest_point import FarthestPointNet, farthest_point_net
+
+__all__ = ["net"]
+
+
+def net(
+    mesh: Path,
+    /,
+    *,
+    size: int | None = None,
+    radius: float | None = None,
+    start: int = 0,
+    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"])] = (),
+    unit: str = "length",
+    json: bool = False,
+) -> None:
+    """Choose vertices of a mesh that are nowhere far from the rest, by exact geodesic distances.
+
+    Parameters
+    ----------
+    mesh
+        Mesh file.
+    size
+        Number of points; give it or a radius.
+    radius
+        Covering radius at which to stop, in the unit of length of the file.
+    start
+        The first point.
+    output
+        File to write to; may be repeated.  CSV: the points in the order of their choice; any other format: the mesh
+        with the fields `net_distance` and `net_label`, which PLY, VTP, NPZ and GIFTI carry.
+    unit
+        Name of the unit of length of the file, such as mm.
+    json
+        Print one JSON object instead of a table.
+    """
+    tables = [path for path in output if path.suffix.lower() == ".csv"]
+    meshes = [path for path in output if path not in tables]
+    check_outputs(meshes, inputs=[mesh])
+    for path in tables:
+        check_table(path)
+    with working(f"reading {mesh.name}"):
+        surface = read_mesh(mesh)
+    begin = time.perf_counter()
+    with working(f"geodesic distances on {surface.n_vertices:,} vertices"):
+        result = farthest_point_net(surface, size=size, radius=radius, start=start)
+    seconds = time.perf_counter() - begin
+    notes = list(surface.notes)
+    for path in meshes:
+        fields = {"net_distance": result.distances, "net_label": result.labels}
+        units = {
+            "net_distance": f"geodesic distance from the net, unit {unit}",
+            "net_label": "nearest point of the net, by its place in it; -1 off the surface",
+        }
+        notes += write_mesh(path, surface, fields, units=units, quality="net_distance")
+    for path in tables:
+        _write_points(path, result, surface.vertices, unit)
+    record = {
+        "size": len(result.indices),
+        "covering_radius": result.covering_radius,
+        "surface_radius": result.surface_radius,
+        "seconds": seconds,
+    }
+    if json:
+        print_json(
+            {
+                "rinow": __version__,
+                "input": str(mesh),
+                **record,
+                "unit": unit,
+                "indices": result.indices.tolist(),
+                "radii": result.radii.tolist(),
+                "outputs": [str(path) for path in output],
+                "notes": notes,
+            }
+        )
+        return
+    print_counts(f"{mesh}: net by farthest points", record)
+    print_notes((f"radii in {unit}; surface_radius bounds the distance inside the faces too.", *notes))
+
+
+def _write_points(path: Path, result: FarthestPointNet, vertices: np.ndarray, unit: str) -> None:
+    """The points, and how far they reach together with those before."""
+    x, y, z = vertices[result.indices].T
+    columns = {"index": result.indices, "x": x, "y": y, "z": z, "covering_radius": result.radii}
+    write_columns(path, columns, f"points of a net in the order of choice; positions and radii in {unit}")

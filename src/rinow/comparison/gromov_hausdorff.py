@@ -1,0 +1,134 @@
+"""The Gromov-Hausdorff distance of finite metric spaces: exact where that is feasible, else a certified interval."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.comparison import bounds, steps
+from rinow.comparison.clock import Clock
+from rinow.comparison.engine import RELATION, Engine, worst_of
+from rinow.comparison.interval import Interval
+from rinow.errors import InvalidInputError
+from rinow.metric_space import MetricSpace, as_metric_space
+
+__all__ = ["GromovHausdorff", "MetricSpace", "gromov_hausdorff"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GromovHausdorff:
+    """Bounds of a Gromov-Hausdorff distance with their certificates.
+
+    Attributes
+    ----------
+    lower, upper : float
+        The distance lies between them, in the unit of length of the spaces.
+    exact : bool
+        Whether the two are equal.
+    correspondence : (k, 2) ndarray of int
+        Pairs (x, y) that cover both spaces; half their distortion is `upper`.
+    lower_bound_by : str
+        What proved `lower`: "non-negativity", "diameter", "eccentricities", "packing", "sorted distances", "arc
+        consistency", "search" or "satisfiability".
+    """
+
+    lower: float
+    upper: float
+    exact: bool
+    correspondence: Indices
+    lower_bound_by: str
+
+
+def gromov_hausdorff(X: Any, Y: Any, *, time_limit: float = 60.0, rtol: float = 0.0) -> GromovHausdorff:
+    r"""Gromov-Hausdorff distance: how far two metric spaces are from being isometric.
+
+    A correspondence is a set R of pairs (x, y) in which every point of both spaces occurs; its distortion is the
+    largest :math:`|d(x, x') - d(y, y')|` over two of its pairs.  The distance is half the least distortion.
+
+    Parameters
+    ----------
+    X, Y : MetricSpace or (n, n) array_like of float
+        Two finite metric spaces, or their distance matrices, in one unit of length; repeated points are allowed.
+    time_limit : float, default 60
+        Seconds after which the search stops with the bounds reached so far; with 0 the bounds that cost no search.
+        One step may overrun it by some tenths of a second.
+    rtol : float, default 0
+        Stop as soon as ``upper - lower <= rtol * upper``; with 0 only when the two are equal.
+
+    Returns
+    -------
+    result : GromovHausdorff
+        `lower` and `upper` in the unit of the distances, `exact` if they are equal, `correspondence` whose distortion
+        is ``2 * upper``, and `lower_bound_by`, the name of what proved `lower`.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is not a space, is empty, or a limit is negative or nan.
+    NotAMetricError
+        If a matrix is not a metric; build a `MetricSpace` with another `rtol` where that is wanted.
+
+    See Also
+    --------
+    distortion : Recomputes the certificate of `upper`.
+
+    Notes
+    -----
+    The search deletes pairs without support until every remaining pair is compatible with some pair of every point (arc
+    consistency), branches on a point with few possible partners, and restarts with what it learned about the points
+    that cause failures.  It begins below the distortion of a relation found by tabu search.  Everything is compared
+    by the float64 operations that measure a distortion, so `lower` holds for the distances as stored.  Random clouds
+    of 100 points in the plane take seconds; the time grows exponentially in the worst case.
+    :math:`|\mathrm{diam} X - \mathrm{diam} Y| / 2 \le d_{GH} \le \max(\mathrm{diam} X, \mathrm{diam} Y) / 2`.
+
+    References
+    ----------
+    .. [1] D. Burago, Y. Burago, S. Ivanov, "A Course in Metric Geometry", 2001, Theorem 7.3.25.
+
+    Examples
+    --------
+    The corners of a unit square and of a regular triangle with the same side:
+
+    >>> square, triangle = [[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 0], [1, 0], [0.5, 0.75**0.5]]
+    >>> X, Y = MetricSpace.from_points(square), MetricSpace.from_points(triangle)
+    >>> result = gromov_hausdorff(X, Y)
+    >>> result.exact, round(result.upper, 6), result.lower_bound_by
+    (True, 0.5, 'packing')
+    """
+    clock = Clock.of(time_limit)
+    if not 0.0 <= rtol < 1.0:
+        raise InvalidInputError(f"rtol = {rtol} is not a relative tolerance; give a number from 0 to below 1.")
+    DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
+    interval = first_interval(DX, DY, rtol)
+    if not interval.closed and not clock.over:
+        engine = Engine(DX, DY)
+        interval.raise_lower(engine.row_bound, "sorted distances")
+        interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
+        steps.close(engine, interval, clock)
+    return GromovHausdorff(0.5 * interval.lower, 0.5 * interval.upper, interval.exact, interval.pairs, interval.by)
+
+
+def first_interval(DX: Floats, DY: Floats, rtol: float) -> Interval:
+    """What can be said at once: two bounds from below, and the better of a few maps."""
+    by_eccentricity = np.argsort(DX.max(axis=1), kind="stable"), np.argsort(DY.max(axis=1), kind="stable")
+    candidates = [_monotone(*by_eccentricity)]
+    if len(DX) == len(DY):
+        candidates.append(np.repeat(np.arange(len(DX))[:, None], 2, axis=1))
+    values = [worst_of(RELATION, DX, DY, pairs) for pairs in candidates]
+    best = int(np.argmin(values))
+    interval = Interval(candidates[best], values[best], rtol=rtol)
+    interval.raise_lower(bounds.diameter_bound(DX, DY), "diameter")
+    interval.raise_lower(bounds.eccentricity_bound(DX, DY), "eccentricities")
+    return interval
+
+
+def _monotone(xs: Indices, ys: Indices) -> Indices:
+    """Pairs that run through two lists at the same pace."""
+    k = max(len(xs), len(ys))
+    return np.stack([xs[np.arange(k) * len(xs) // k], ys[np.arange(k) * len(ys) // k]], axis=1)

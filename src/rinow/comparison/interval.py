@@ -1,0 +1,74 @@
+"""The state of an anytime comparison: what is proved from below, what was measured from above."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow import tolerances
+from rinow.comparison.engine import Engine
+
+__all__ = ["Interval", "next_difference"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+class Interval:
+    """Bounds of the least level of a relation, the relation that has the upper one, and what proved the lower one."""
+
+    def __init__(self, pairs: Indices, upper: float, *, lower: float = 0.0, rtol: float = 0.0) -> None:
+        self.pairs, self.upper = pairs, upper
+        self.lower, self.by = lower, "non-negativity"
+        self.rtol = rtol
+
+    @property
+    def closed(self) -> bool:
+        """Whether the interval is as short as was asked for."""
+        return self.upper - self.lower <= max(self.rtol, tolerances.EXACT) * self.upper
+
+    @property
+    def exact(self) -> bool:
+        """Whether the bounds are equal, up to the rounding of isometries that a proof used."""
+        return self.upper - self.lower <= tolerances.EXACT * self.upper
+
+    @property
+    def wanted(self) -> float:
+        """Level whose refutation closes the interval."""
+        return min(float(np.nextafter(self.upper, -math.inf)), self.upper * (1.0 - self.rtol))
+
+    def raise_lower(self, value: float, by: str) -> None:
+        """Take a better lower bound; values above the upper bound are its rounding."""
+        if value > self.lower:
+            self.lower, self.by = min(value, self.upper), by
+
+    def refuted(self, level: float, engine: Engine, by: str, error: float = 0.0) -> None:
+        """Take note that no relation fits a level: the bound is the next level that two distances can have.
+
+        It is lower by the error of a proof that used isometries up to rounding.
+        """
+        self.raise_lower(min(next_difference(engine, level), self.upper) - error, by)
+
+    def offer(self, pairs: Indices, value: float) -> bool:
+        """Take a relation if it is better than the best one."""
+        if value >= self.upper:
+            return False
+        self.pairs, self.upper = pairs, value
+        self.lower = min(self.lower, value)
+        return True
+
+
+def next_difference(engine: Engine, level: float) -> float:
+    """Least discrepancy of a distance of X and one of Y that is above a level; inf if there is none."""
+    if engine.kind == 1:
+        return float(np.nextafter(level, math.inf))
+    a, b = np.unique(engine.DX), np.unique(engine.DY)
+    best = math.inf
+    for side in (level, -level):
+        place = np.searchsorted(b, a + side)
+        for shift in (-2, -1, 0, 1):
+            gap = np.abs(a - b[np.clip(place + shift, 0, len(b) - 1)])
+            best = min(best, float(gap[gap > level].min(initial=math.inf)))
+    return best

@@ -1,0 +1,145 @@
+"""The steps of an exact comparison; each improves an interval and stops with the clock."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from rinow.comparison.clock import Clock
+from rinow.comparison.engine import BIJECTION, Engine, Search
+from rinow.comparison.interval import Interval
+from rinow.comparison.satisfiability import Satisfiability, solver_installed
+from rinow.comparison.symmetry import Isometries, isometries
+from rinow.comparison.warm_start import BijectionTabu, RelationTabu, TabuSearch
+
+__all__ = ["close", "warm_start"]
+
+Indices = NDArray[np.intp]
+Flags = NDArray[np.bool_]
+Symmetries = tuple[Isometries, Isometries]
+
+BISECTION = 2e-3
+"""The bound of arc consistency is found to this share of itself."""
+
+
+def close(engine: Engine, interval: Interval, clock: Clock) -> None:
+    """All steps in turn, until the interval is closed or the time is over."""
+    warm_start(engine, interval, clock.part(0.2 * clock.left), n_starts=4, n_moves=20 * sum(engine.shape))
+    if interval.closed:
+        return
+    symmetries = isometries(engine.DX), isometries(engine.DY)
+    if engine.kind == BIJECTION:
+        symmetries = symmetries[0].exact(), symmetries[1].exact()
+    homogeneous = not (symmetries[0].trivial and symmetries[1].trivial)
+    share = 0.05 if homogeneous else 0.2
+    possible = branch_and_bound(engine, interval, clock.part(share * clock.left), None, symmetries)
+    if possible is not None and not interval.closed:
+        satisfiability(engine, interval, clock.part(0.4 * clock.left), possible, symmetries)
+    if possible is not None and not interval.closed:
+        bisect_by_consistency(engine, interval, clock.part(0.4 * clock.left))
+        branch_and_bound(engine, interval, clock, possible, symmetries)
+
+
+def warm_start(engine: Engine, interval: Interval, clock: Clock, *, n_starts: int, n_moves: int) -> None:
+    """Tabu search from several starts: the rows that agree best, then random maps."""
+    rng = np.random.default_rng(20)
+    for search in _searches(engine, rng):
+        search.run(n_moves, clock, interval.lower)
+        interval.offer(search.pairs, search.best)
+        n_starts -= 1
+        if interval.closed or clock.over or n_starts == 0:
+            return
+
+
+def _searches(engine: Engine, rng: np.random.Generator) -> Iterator[TabuSearch]:
+    """Tabu searches without end."""
+    (n, m), levels, seed = engine.shape, engine.row_levels, 0
+    if engine.kind == BIJECTION:
+        f = linear_sum_assignment(np.log(np.minimum(levels, 1e100)))[1]
+        while True:
+            yield BijectionTabu(engine.DX, engine.DY, f, seed)
+            f, seed = rng.permutation(n), seed + 1
+    f, g = levels.argmin(axis=1), levels.argmin(axis=0)
+    while True:
+        yield RelationTabu(engine.DX, engine.DY, f, g, seed)
+        f, g, seed = rng.integers(m, size=n), rng.integers(n, size=m), seed + 1
+
+
+def polish(engine: Engine, interval: Interval, clock: Clock) -> None:
+    """Tabu search from the best relation, in the hope of leaving out many small improvements."""
+    n, m = engine.shape
+    f, g = np.zeros(n, np.intp), np.zeros(m, np.intp)
+    f[interval.pairs[:, 0]] = interval.pairs[:, 1]
+    g[interval.pairs[:, 1]] = interval.pairs[:, 0]
+    seed = len(interval.pairs)
+    bijective = engine.kind == BIJECTION
+    search = (
+        BijectionTabu(engine.DX, engine.DY, f, seed) if bijective else RelationTabu(engine.DX, engine.DY, f, g, seed)
+    )
+    search.run(8 * (n + m), clock, interval.lower)
+    interval.offer(search.pairs, search.best)
+
+
+def branch_and_bound(
+    engine: Engine, interval: Interval, clock: Clock, possible: Flags | None, symmetries: Symmetries
+) -> Flags | None:
+    """Search below the upper bound until it is proved or the time is over; the pairs still possible below it."""
+    level = interval.wanted
+    possible = engine.consistent(level, clock, possible)
+    if possible is None:
+        interval.refuted(level, engine, "arc consistency")
+        return None
+    if not engine.fits(possible):
+        return possible
+    search = Search(engine, possible, level, (symmetries[0].images, symmetries[1].images))
+    while not interval.closed:
+        exhausted, pairs = search.run(clock)
+        if exhausted:
+            error = symmetries[0].error + symmetries[1].error
+            interval.refuted(level, engine, "search", error * search.depth_of_proof)
+            return None
+        if pairs is None:
+            break
+        interval.offer(pairs, engine.worst_of(pairs))
+        polish(engine, interval, clock)
+        level = interval.wanted
+        search.lower_level(level)
+    return search.possible()
+
+
+def satisfiability(engine: Engine, interval: Interval, clock: Clock, possible: Flags, symmetries: Symmetries) -> None:
+    """Let a clause-learning solver search below the upper bound until it is proved or the time is over."""
+    level = interval.wanted
+    left = engine.consistent(level, clock, possible)
+    if left is None:
+        interval.refuted(level, engine, "arc consistency")
+        return
+    if not solver_installed():
+        return
+    with Satisfiability(engine, left, level, clock, symmetries) as solver:
+        while solver.ready and not interval.closed:
+            refuted, pairs = solver.run(clock)
+            if refuted:
+                interval.refuted(level, engine, "satisfiability", solver.error)
+            if refuted or pairs is None:
+                return
+            interval.offer(pairs, engine.worst_of(pairs))
+            polish(engine, interval, clock)
+            level = interval.wanted
+            solver.lower_level(level, clock)
+
+
+def bisect_by_consistency(engine: Engine, interval: Interval, clock: Clock, possible: Flags | None = None) -> None:
+    """Raise the lower bound to the highest level that arc consistency refutes."""
+    low, high = interval.lower, interval.wanted
+    while high - low > BISECTION * high and not interval.closed and not clock.over:
+        middle = 0.5 * (low + high)
+        left = engine.consistent(middle, clock, possible)
+        if left is None:
+            interval.refuted(middle, engine, "arc consistency")
+            low = max(middle, interval.lower)
+        elif not clock.over:
+            high, possible = middle, left

@@ -1,0 +1,179 @@
+"""Tables of numbers in files: points as rows, or distance matrices."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
+
+from rinow.errors import FileFormatError
+from rinow.io.atomic import check_target, replacing
+from rinow.io.faults import reading, writing
+from rinow.io.mesh_files import read_mesh
+from rinow.io.npz import read_arrays
+from rinow.io.ply import read_ply_points
+from rinow.io.text_numbers import numbers_of_rows
+
+__all__ = ["TABLE_SUFFIXES", "check_table", "read_distances", "read_points", "write_columns"]
+
+Floats = NDArray[np.float64]
+
+TEXT = (".csv", ".tsv", ".txt", ".xyz", ".dat")
+TABLE_SUFFIXES = (*TEXT, ".npy", ".npz")
+POINT_NAMES = ("points", "P", "V")
+DISTANCE_NAMES = ("distances", "D")
+
+
+def read_points(path: str | os.PathLike[str]) -> Floats:
+    """Read points, one per row, from a table, or the vertices of a mesh file or PLY point cloud.
+
+    Parameters
+    ----------
+    path : path
+        Text with one point per line (.csv, .tsv, .txt, .xyz, .dat; commas, semicolons or white space; a heading and
+        lines that begin with # are skipped), .npy, .npz (its only array, or ``points``, ``P`` or ``V``), .ply, or any
+        file that `rinow.read_mesh` reads.
+
+    Returns
+    -------
+    points : (n, dimension) ndarray of float
+        In the order of the file.
+
+    Raises
+    ------
+    FileFormatError
+        If the file is missing, has a fault, or holds no table.
+    """
+    file = Path(path)
+    if file.suffix.lower() == ".ply":
+        with reading(file, "PLY"):
+            return read_ply_points(file)
+    if file.suffix.lower() in TABLE_SUFFIXES:
+        return _read_table(file, POINT_NAMES)
+    return read_mesh(file).vertices
+
+
+def read_distances(path: str | os.PathLike[str]) -> Floats:
+    """Read a square matrix of distances from a table.
+
+    Parameters
+    ----------
+    path : path
+        As for `read_points`; in .npz files the only array, or ``distances`` or ``D``.
+
+    Returns
+    -------
+    distances : (n, n) ndarray of float
+        Not checked further.
+
+    Raises
+    ------
+    FileFormatError
+        If the file is missing, has a fault, or its table is not square.
+    """
+    file = Path(path)
+    D = _read_table(file, DISTANCE_NAMES)
+    if D.shape[0] != D.shape[1]:
+        raise FileFormatError(f"{file} has {D.shape[0]} rows of {D.shape[1]} numbers; a distance matrix is square.")
+    return D
+
+
+def _read_table(file: Path, names: tuple[str, ...]) -> Floats:
+    """A table of real numbers with at least one row and one column."""
+    suffix = file.suffix.lower()
+    with reading(file, suffix.removeprefix(".").upper() or "table"):
+        if suffix in TEXT:
+            return _from_text(file.read_bytes())
+        if suffix == ".npz":
+            table = _chosen(read_arrays(file), names)
+        elif suffix == ".npy":
+            table = np.load(file, allow_pickle=False)
+        else:
+            raise FileFormatError(f"the suffix is none of {' '.join(TABLE_SUFFIXES)}; convert the table to CSV.")
+        if table.ndim != 2 or not table.size or table.dtype.kind not in "biuf":
+            raise FileFormatError(f"the array has type {table.dtype} and shape {table.shape}; give a table of numbers.")
+        return np.ascontiguousarray(table, np.float64)
+
+
+def _chosen(arrays: Mapping[str, NDArray[np.generic]], names: tuple[str, ...]) -> NDArray[np.generic]:
+    """The only array, or the first of these names."""
+    if len(arrays) == 1:
+        return next(iter(arrays.values()))
+    for name in names:
+        if name in arrays:
+            return arrays[name]
+    raise FileFormatError(f"the archive holds {', '.join(arrays) or 'nothing'} but none of {', '.join(names)}.")
+
+
+def _from_text(text: bytes) -> Floats:
+    """Rows of numbers; blank lines and comments are skipped, and so is a heading."""
+    lines = text.replace(b",", b" ").replace(b";", b" ").replace(b"\r", b"\n").split(b"\n")
+    kept = [i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith(b"#")]
+    if kept and not _is_numeric(lines[kept[0]]):
+        del kept[0]
+    if not kept:
+        raise FileFormatError("the file holds no numbers; give one row per line.")
+    values, counts = numbers_of_rows(b"\n".join(lines[i] for i in kept), lambda i: f"line {kept[i] + 1}")
+    uneven = np.flatnonzero(counts[: len(kept)] != counts[0])
+    if len(uneven):
+        i = int(uneven[0])
+        raise FileFormatError(f"line {kept[i] + 1} has {counts[i]} numbers, but the first row {counts[0]}.")
+    return values.reshape(len(kept), int(counts[0]))
+
+
+def _is_numeric(line: bytes) -> bool:
+    try:
+        _ = [float(word) for word in line.split()]
+    except ValueError:
+        return False
+    return True
+
+
+def check_table(path: Path, *, inputs: Iterable[Path] = ()) -> None:
+    """Refuse a table that could not be written later.
+
+    Raises
+    ------
+    FileFormatError
+        If the suffix is neither .csv nor .npz, or the file is an input or cannot be made where it is.
+    """
+    if path.suffix.lower() not in (".csv", ".npz"):
+        raise FileFormatError(f"{path} has neither suffix .csv nor .npz; choose another name for the table.")
+    if os.path.realpath(path) in {os.path.realpath(source) for source in inputs}:
+        raise FileFormatError(f"{path} is the input; choose another name for the output.")
+    check_target(path)
+
+
+def write_columns(path: Path, columns: Mapping[str, NDArray[np.generic]], meaning: str) -> None:
+    """Write columns of equal length as CSV or NPZ, whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        A file with the suffix .csv or .npz.
+    columns : mapping of str to (n,) ndarray
+        The columns.
+    meaning : str
+        Quantities and units in words: the first line of a CSV file after #, the array ``units`` of an NPZ file.
+
+    Raises
+    ------
+    FileFormatError
+        If the file cannot be written.
+    """
+    with writing(path, "table"), replacing(path) as temporary:
+        if path.suffix.lower() == ".npz":
+            with zipfile.ZipFile(temporary, "w") as archive:
+                for name, values in {**columns, "units": np.array(meaning)}.items():
+                    with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                        npy.write_array(file, np.asarray(values), allow_pickle=False)
+            return
+        rows = zip(*(np.asarray(values).tolist() for values in columns.values()), strict=True)
+        with temporary.open("w", encoding="utf-8") as file:
+            file.write(f"# {meaning}\n{','.join(columns)}\n")
+            file.writelines(",".join(map(repr, row)) + "\n" for row in rows)

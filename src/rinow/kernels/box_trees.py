@@ -1,0 +1,206 @@
+"""Triangles in a balanced tree of boxes, and the nearest one to a point."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from rinow.kernels._jit import kernel, parallel_kernel, prange
+
+LEAF, BLOCK, ROOM = 4, 256, 64
+"""Triangles in a leaf at most, points that one thread takes together, and the height of the stack of open boxes."""
+
+NEEDLE = 1e-6
+"""Squared sine of an angle below which the sides of a triangle are asked as well as its plane."""
+
+
+class BoxTree(NamedTuple):
+    """Triangles sorted into a binary tree; box i has the children 2 i and 2 i + 1, and the root is box 1.
+
+    Box i of level l (2^l <= i < 2^(l + 1)) holds the triangles from ``(i - 2^l) n >> l`` to ``(i + 1 - 2^l) n >> l``.
+    """
+
+    corners: np.ndarray  # (n, 9), in the order of the tree
+    order: np.ndarray  # (n,), number of each triangle before it was sorted
+    boxes: np.ndarray  # (2 leaves, 6): least and greatest coordinates
+    depth: int
+
+
+@kernel
+def sort_into_tree(corners, depth, order):
+    """Write the order of the triangles: each box is halved at the median of the centres along its longest side."""
+    n = corners.shape[0]
+    centres, keys = np.empty((n, 3)), np.empty(n)
+    for t in range(n):
+        order[t] = t
+        for axis in range(3):
+            centres[t, axis] = corners[t, axis] + corners[t, 3 + axis] + corners[t, 6 + axis]
+    for level in range(depth):
+        for j in range(1 << level):
+            first, last = j * n >> level, (j + 1) * n >> level
+            middle = (2 * j + 1) * n >> (level + 1)
+            if first < middle < last:
+                axis = _longest_axis(centres, order, first, last)
+                for i in range(first, last):
+                    keys[i] = centres[order[i], axis]
+                _select(keys, order, first, last - 1, middle)
+
+
+@kernel
+def _longest_axis(centres, order, first, last):
+    """Coordinate along which some points spread farthest."""
+    best, longest = 0, -1.0
+    for axis in range(3):
+        least = greatest = centres[order[first], axis]
+        for i in range(first, last):
+            x = centres[order[i], axis]
+            least, greatest = min(least, x), max(greatest, x)
+        if greatest - least > longest:
+            best, longest = axis, greatest - least
+    return best
+
+
+@kernel
+def _select(keys, order, low, high, middle):
+    """Move the smaller keys of low..high before place `middle` and the larger ones behind it (Hoare)."""
+    while low < high:
+        pivot, i, j = keys[(low + high) // 2], low, high
+        while i <= j:
+            while keys[i] < pivot:
+                i += 1
+            while keys[j] > pivot:
+                j -= 1
+            if i <= j:
+                keys[i], keys[j] = keys[j], keys[i]
+                order[i], order[j] = order[j], order[i]
+                i, j = i + 1, j - 1
+        if middle <= j:
+            high = j
+        elif middle >= i:
+            low = i
+        else:
+            return
+
+
+@kernel
+def bound_boxes(corners, depth, boxes):
+    """Write the boxes, leaves first."""
+    n, leaves = corners.shape[0], 1 << depth
+    for i in range(2 * leaves - 1, 0, -1):
+        for axis in range(3):
+            boxes[i, axis], boxes[i, 3 + axis] = np.inf, -np.inf
+        if i < leaves:
+            for axis in range(3):
+                boxes[i, axis] = min(boxes[2 * i, axis], boxes[2 * i + 1, axis])
+                boxes[i, 3 + axis] = max(boxes[2 * i, 3 + axis], boxes[2 * i + 1, 3 + axis])
+            continue
+        for t in range((i - leaves) * n >> depth, (i + 1 - leaves) * n >> depth):
+            for k in range(9):
+                boxes[i, k % 3] = min(boxes[i, k % 3], corners[t, k])
+                boxes[i, 3 + k % 3] = max(boxes[i, 3 + k % 3], corners[t, k])
+
+
+@kernel
+def box_gap(boxes, i, x, y, z):
+    """Squared distance of a point from a box."""
+    u = max(max(boxes[i, 0] - x, x - boxes[i, 3]), 0.0)
+    v = max(max(boxes[i, 1] - y, y - boxes[i, 4]), 0.0)
+    w = max(max(boxes[i, 2] - z, z - boxes[i, 5]), 0.0)
+    return u * u + v * v + w * w
+
+
+@kernel
+def nearest_triangle(tree, x, y, z, hint, stack, gaps):
+    """Nearest triangle to a point and its squared distance; `hint` is any triangle, the nearer the faster."""
+    n, leaves = tree.corners.shape[0], 1 << tree.depth
+    best, nearest = triangle_gap(tree.corners, hint, x, y, z), hint
+    stack[0], gaps[0], top = 1, box_gap(tree.boxes, 1, x, y, z), 1
+    while top > 0:
+        top -= 1
+        i = stack[top]
+        if gaps[top] >= best:
+            continue
+        if i >= leaves:
+            for t in range((i - leaves) * n >> tree.depth, (i + 1 - leaves) * n >> tree.depth):
+                gap = triangle_gap(tree.corners, t, x, y, z)
+                if gap < best:
+                    best, nearest = gap, t
+            continue
+        left, right = box_gap(tree.boxes, 2 * i, x, y, z), box_gap(tree.boxes, 2 * i + 1, x, y, z)
+        near = 2 * i if left <= right else 2 * i + 1
+        if max(left, right) < best:
+            stack[top], gaps[top] = 4 * i + 1 - near, max(left, right)
+            top += 1
+        if min(left, right) < best:
+            stack[top], gaps[top] = near, min(left, right)
+            top += 1
+    return best, nearest
+
+
+@kernel
+def triangle_gap(corners, t, x, y, z):
+    """Squared distance of a point from a triangle."""
+    u, v, w = foot_on_triangle(corners, t, x, y, z)
+    return _square(x - u, y - v, z - w)
+
+
+@kernel
+def _square(x, y, z):
+    """Squared length of a vector."""
+    return x * x + y * y + z * z
+
+
+@kernel
+def foot_on_triangle(corners, t, x, y, z):
+    """Point of a triangle that is nearest to (x, y, z); the triangle may be a segment or a point."""
+    ax, ay, az = corners[t, 0], corners[t, 1], corners[t, 2]
+    bx, by, bz = corners[t, 3] - ax, corners[t, 4] - ay, corners[t, 5] - az
+    cx, cy, cz = corners[t, 6] - ax, corners[t, 7] - ay, corners[t, 8] - az
+    px, py, pz = x - ax, y - ay, z - az
+    nx, ny, nz = by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx
+    square = nx * nx + ny * ny + nz * nz
+    if square == 0.0:
+        return _foot_on_sides(corners, t, x, y, z)
+    beta = (nx * (py * cz - pz * cy) + ny * (pz * cx - px * cz) + nz * (px * cy - py * cx)) / square
+    gamma = (nx * (by * pz - bz * py) + ny * (bz * px - bx * pz) + nz * (bx * py - by * px)) / square
+    if not (beta >= 0.0 and gamma >= 0.0 and beta + gamma <= 1.0):
+        return _foot_on_sides(corners, t, x, y, z)
+    u, v, w = ax + beta * bx + gamma * cx, ay + beta * by + gamma * cy, az + beta * bz + gamma * cz
+    if square > NEEDLE * (bx * bx + by * by + bz * bz) * (cx * cx + cy * cy + cz * cz):
+        return u, v, w
+    fx, fy, fz = _foot_on_sides(corners, t, x, y, z)  # the plane of a needle is vague: a side may be nearer
+    gap, side = _square(x - u, y - v, z - w), _square(x - fx, y - fy, z - fz)
+    return (u, v, w) if gap < side else (fx, fy, fz)
+
+
+@kernel
+def _foot_on_sides(corners, t, x, y, z):
+    """Point of the three sides that is nearest to (x, y, z); end points are met exactly."""
+    best, fx, fy, fz = np.inf, 0.0, 0.0, 0.0
+    for k in range(3):
+        i, j = 3 * k, 3 * ((k + 1) % 3)
+        ax, ay, az = corners[t, i], corners[t, i + 1], corners[t, i + 2]
+        ex, ey, ez = corners[t, j] - ax, corners[t, j + 1] - ay, corners[t, j + 2] - az
+        dot, square = (x - ax) * ex + (y - ay) * ey + (z - az) * ez, ex * ex + ey * ey + ez * ez
+        if dot <= 0.0 or square == 0.0:
+            u, v, w = ax, ay, az
+        elif dot >= square:
+            u, v, w = corners[t, j], corners[t, j + 1], corners[t, j + 2]
+        else:
+            s = dot / square
+            u, v, w = ax + s * ex, ay + s * ey, az + s * ez
+        gap = _square(x - u, y - v, z - w)
+        if gap < best:
+            best, fx, fy, fz = gap, u, v, w
+    return fx, fy, fz
+
+
+@parallel_kernel
+def nearest_triangles(tree, points, order, nearest, distances):
+    """Write the nearest triangle of each point of a list, and its distance; neighbours in the list help each other."""
+    for block in prange((order.shape[0] + BLOCK - 1) // BLOCK):
+        stack, gaps, hint = np.empty(ROOM, np.intp), np.empty(ROOM), 0
+        for i in range(block * BLOCK, min((block + 1) * BLOCK, order.shape[0])):
+            p = order[i]
+            gap, hint = nearest_triangle(tree, points[p, 0], points[p, 1], points[p, 2], hint, stack, gaps)
+            nearest[p], distances[p] = hint, math.sqrt(gap)

@@ -1,0 +1,1 @@
+"""Finite nets in a space, and graphs that approximate it."""

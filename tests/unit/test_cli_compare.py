@@ -1,0 +1,177 @@
+"""`rinow compare` and `rinow net`: outputs, exit codes, one sentence for bad input, nothing half-written."""
+
+import json
+import os
+
+import numpy as np
+import pytest
+
+import rinow
+from rinow.cli.main import main
+from shapes import cube, icosphere
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    c = cube()
+    rinow.write_mesh("a.ply", (c.vertices, c.faces))
+    rinow.write_mesh("b.obj", (2 * c.vertices - 0.5, c.faces))
+    (tmp_path / "p.csv").write_text("x,y\n0,0\n3,0\n")
+    (tmp_path / "q.txt").write_text("# points\n0 1\n0 0\n\n3 4\n")
+    np.savez(tmp_path / "d.npz", distances=[[0.0, 1, 3], [1, 0, 2], [3, 2, 0]], other=[1.0])
+    np.save(tmp_path / "e.npy", [[0.0, 1], [1, 0]])
+    return tmp_path
+
+
+def run(capfd, *arguments):
+    """Exit code, stdout and stderr."""
+    code = main(list(arguments))
+    out = capfd.readouterr()
+    return code, out.out, out.err
+
+
+def test_surfaces(folder, capfd):
+    code, out, err = run(capfd, "compare", "a.ply", "b.obj", "--json", "--unit", "mm", "-o", "a2.ply", "-o", "b.csv")
+    assert (code, err) == (0, "")
+    record = json.loads(out)
+    assert record["lower"] <= 3**0.5 / 2 <= record["upper"]
+    assert record["unit"] == "mm"
+    assert record["metric"] == "hausdorff"
+    assert record["kind"] == "surfaces"
+    assert np.shape(record["witness_a"]) == (3,)
+    assert record["percentiles_a"]["100"] == pytest.approx(0.5)
+    assert record["outputs"] == ["a2.ply", "b.csv"]
+    expected = rinow.hausdorff_distance(rinow.read_mesh("a.ply"), rinow.read_mesh("b.obj"))
+    np.testing.assert_array_equal(rinow.read_mesh("a2.ply").vertex_data["quality"], expected.distances_a)
+    assert b"distance from B, unit mm" in (folder / "a2.ply").read_bytes()
+    lines = (folder / "b.csv").read_text().splitlines()
+    assert lines[:2] == ["# distance from A, unit mm", "distance"]
+    np.testing.assert_array_equal([float(x) for x in lines[2:]], expected.distances_b)
+
+
+def test_the_table_says_the_interval_in_words(folder, capfd):
+    code, out, err = run(capfd, "compare", "a.ply", "b.obj", "--tolerance", "1e-6")
+    assert (code, err) == (0, "")
+    assert "<= distance <=" in out
+    assert "length" in out
+    assert "\x1b" not in out
+
+
+def test_points(folder, capfd):
+    code, out, _ = run(capfd, "compare", "p.csv", "q.txt", "--points", "--json", "-o", "p.npz")
+    record = json.loads(out)
+    assert code == 0
+    assert record["lower"] == record["upper"] == 4.0
+    assert (record["witness_a"], record["witness_b"]) == (1, 2)
+    with np.load("p.npz") as archive:
+        assert archive["distance"].tolist() == [0.0, 3.0]
+        assert "unit length" in str(archive["units"])
+    code, out, _ = run(capfd, "compare", "a.ply", "b.obj", "--points", "--json")
+    assert json.loads(out)["upper"] == pytest.approx(3**0.5 / 2, rel=1e-15)
+
+
+def test_a_point_cloud_needs_no_faces(folder, capfd):
+    axes = "".join(f"property float {axis}\n" for axis in "xyz")
+    (folder / "cloud.ply").write_text(f"ply\nformat ascii 1.0\nelement vertex 2\n{axes}end_header\n0 0 0\n0 0 2\n")
+    code, out, _ = run(capfd, "compare", "cloud.ply", "a.ply", "--points", "--json")
+    assert code == 0
+    assert json.loads(out)["directed_a"] == [1.0, 1.0]
+
+
+def test_distance_matrices(folder, capfd):
+    code, out, err = run(capfd, "compare", "d.npz", "e.npy", "--distances", "--json", "-o", "pairs.csv")
+    assert (code, err) == (0, "")
+    record = json.loads(out)
+    X, Y = rinow.MetricSpace([[0, 1, 3], [1, 0, 2], [3, 2, 0]]), rinow.MetricSpace([[0, 1], [1, 0]])
+    assert record["metric"] == "gromov-hausdorff"
+    assert record["exact"]
+    assert record["upper"] == rinow.gromov_hausdorff(X, Y).upper == 0.5 * rinow.distortion(record["pairs"], X, Y) == 1.0
+    rows = (folder / "pairs.csv").read_text().splitlines()
+    assert rows[1] == "a,b"
+    assert [[int(x) for x in row.split(",")] for row in rows[2:]] == record["pairs"]
+    code, out, _ = run(capfd, "compare", "d.npz", "e.npy", "--distances", "--metric", "lipschitz", "--json")
+    assert code == 0
+    assert json.loads(out)["upper"] is None  # infinite: the sizes differ
+    code, out, _ = run(capfd, "compare", "p.csv", "p.csv", "--points", "--metric", "lipschitz")
+    assert code == 0
+    assert "0 <= distance <= 0;" in out
+
+
+def test_surfaces_by_their_inner_distances(folder, capfd):
+    code, out, _ = run(capfd, "compare", "a.ply", "b.obj", "--metric", "lipschitz", "--json", "--time-limit", "20")
+    record = json.loads(out)
+    assert code == 0
+    assert record["unit"] == "1"
+    assert record["lower"] <= np.log(2) + 1e-12
+    assert record["upper"] >= np.log(2) - 1e-12
+
+
+def test_net(folder, capfd):
+    s = icosphere(2)
+    rinow.write_mesh("s.ply", (s.vertices, s.faces))
+    code, out, err = run(
+        capfd, "net", "s.ply", "--size", "6", "--json", "-o", "n.ply", "-o", "n.csv", "-o", "n.npz", "--unit", "m"
+    )
+    assert (code, err) == (0, "")
+    record = json.loads(out)
+    expected = rinow.farthest_point_net((s.vertices, s.faces), size=6)
+    assert record["indices"] == expected.indices.tolist()
+    assert record["covering_radius"] == expected.covering_radius
+    assert record["unit"] == "m"
+    mesh = rinow.read_mesh("n.npz")
+    np.testing.assert_array_equal(mesh.vertex_data["net_label"], expected.labels)
+    np.testing.assert_array_equal(mesh.vertex_data["net_distance"], expected.distances)
+    np.testing.assert_array_equal(rinow.read_mesh("n.ply").vertex_data["quality"], expected.distances)
+    assert (folder / "n.csv").read_text().splitlines()[1] == "index,x,y,z,covering_radius"
+    code, out, _ = run(capfd, "net", "s.ply", "--radius", "0.7")
+    assert code == 0
+    assert "covering radius" in out
+
+
+BAD = [
+    (["compare", "a.ply", "missing.ply"], "missing.ply: there is no such file"),
+    (["compare", "a.ply", "p.csv"], "p.csv has no suffix of a known mesh format"),
+    (["compare", "p.csv", "text.csv", "--points"], "text.csv: line 2"),
+    (["compare", "p.csv", "uneven.csv", "--points"], "uneven.csv: line 3 has 3 numbers, but the first row 2."),
+    (["compare", "p.csv", "empty.csv", "--points"], "empty.csv: the file is empty"),
+    (["compare", "p.csv", "a.ply", "--points"], "A has points of dimension 2, B of dimension 3"),
+    (["compare", "d.npz", "p.csv", "--points"], "d.npz: the archive holds distances, other but none of points"),
+    (["compare", "d.npz", "p.csv", "--points", "--distances"], "exclude each other"),
+    (["compare", "d.npz", "uneven.csv", "--distances"], "uneven.csv: line 3"),
+    (["compare", "d.npz", "q.txt", "--distances"], "q.txt has 3 rows of 2 numbers; a distance matrix is square."),
+    (["compare", "d.npz", "e.npy", "--distances", "--metric", "hausdorff"], "choose --metric gromov-hausdorff"),
+    (["compare", "a.ply", "b.obj", "--tolerance", "0"], "tolerance = 0.0 is not positive"),
+    (["compare", "a.ply", "b.obj", "-o", "a.ply"], "a.ply is the input"),
+    (["compare", "p.csv", "q.txt", "--points", "-o", "p.csv"], "p.csv is the input"),
+    (["compare", "a.ply", "b.obj", "-o", "no_folder/o.csv"], "does not exist"),
+    (["compare", "p.csv", "q.txt", "--points", "-o", "o.ply"], "neither suffix .csv nor .npz"),
+    (["compare", "a.ply", "b.obj", "-o", "o.csv", "-o", "o.csv"], "named twice"),
+    (["compare", "a.ply", "b.obj", "-o", "1.csv", "-o", "2.csv", "-o", "3.csv"], "3.csv is one output too many"),
+    (["net", "a.ply"], "size and radius are both missing"),
+    (["net", "a.ply", "--size", "9"], "size = 9 is outside 1..8"),
+    (["net", "a.ply", "--size", "2", "--start", "8"], "start = 8 is outside 0..7"),
+    (["net", "a.ply", "--size", "2", "-o", "a.ply"], "a.ply is the input"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "message"), BAD)
+def test_bad_input_is_one_sentence_and_nothing_is_written(folder, capfd, arguments, message):
+    (folder / "text.csv").write_text("1,2\n3,four\n")
+    (folder / "uneven.csv").write_text("x,y\n1,2\n1,2,3\n")
+    (folder / "empty.csv").write_text("")
+    before = sorted(os.listdir(folder))
+    code, out, err = run(capfd, *arguments)
+    assert (code, out) == (1, "")
+    assert err.startswith("rinow: ")
+    assert err.count("\n") == 1
+    assert message in err
+    assert sorted(os.listdir(folder)) == before
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["compare", "a.ply"], ["compare", "a.ply", "b.obj", "--metric", "x"], ["net"], ["net", "a.ply", "--size", "x"]],
+)
+def test_wrong_usage_exits_with_2(folder, arguments):
+    assert main(arguments) == 2
