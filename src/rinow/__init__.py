@@ -11,9 +11,12 @@ from typing import Any
 from rinow._version import __version__
 
 _HOME = {
+    "Approximation": "comparison.approximation",
     "ConvergenceError": "errors",
     "CurvatureFit": "embedding.point_set",
+    "DistanceMatrix": "comparison.collection",
     "EmbeddingCurvatures": "embedding.quadruple",
+    "EpsilonIsometry": "comparison.approximation",
     "FileFormatError": "errors",
     "GromovHausdorff": "comparison.gromov_hausdorff",
     "IntrinsicMesh": "mesh",
@@ -51,7 +54,10 @@ _HOME = {
     "semidependent_order": "embedding.semidependent",
     "star_curvature": "embedding.star",
     "dilatation": "comparison.lipschitz",
+    "distance_matrix": "comparison.collection",
     "distortion": "comparison.correspondence",
+    "find_approximation": "comparison.approximation",
+    "find_epsilon_isometry": "comparison.approximation",
     "gromov_hausdorff": "comparison.gromov_hausdorff",
     "lipschitz_distance": "comparison.lipschitz",
     "uniform_distance": "comparison.correspondence",
