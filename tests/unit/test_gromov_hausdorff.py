@@ -21,7 +21,7 @@ SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a search in pl
 
 
 def random_space(rng, n):
-    """Distances of n random points: plane, line with repeated points, hops in a tree with a few more edges, or generic."""
+    """Distances of n random points: plane, line with repeated points, hops in a graph, or generic."""
     kind = rng.integers(4)
     if kind == 0:
         return squareform(pdist(rng.random((n, 2)))) if n > 1 else np.zeros((1, 1))

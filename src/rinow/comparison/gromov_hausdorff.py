@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow.comparison import bounds, steps
+from rinow.comparison import bounds, large, steps
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import RELATION, Engine, worst_of
 from rinow.comparison.interval import Interval
@@ -107,10 +107,13 @@ def gromov_hausdorff(X: Any, Y: Any, *, time_limit: float = 60.0, rtol: float = 
     DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
     interval = first_interval(DX, DY, rtol)
     if not interval.closed and not clock.over:
-        engine = Engine(DX, DY)
-        interval.raise_lower(engine.row_bound, "sorted distances")
         interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
-        steps.close(engine, interval, clock)
+        if len(DX) * len(DY) * (len(DX) + len(DY)) < large.LARGE:
+            engine = Engine(DX, DY)
+            interval.raise_lower(engine.row_bound, "sorted distances")
+            steps.close(engine, interval, clock)
+        else:
+            large.approach(DX, DY, interval, clock)
     return GromovHausdorff(0.5 * interval.lower, 0.5 * interval.upper, interval.exact, interval.pairs, interval.by)
 
 
