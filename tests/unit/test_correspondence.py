@@ -173,7 +173,8 @@ def test_distance_matrix(metric):
         "uniform": uniform_distance,
     }[metric]
     for i, j in product(range(4), repeat=2):
-        assert result.upper[i, j] == result.lower[i, j] == (single(spaces[max(i, j)], spaces[min(i, j)]) if i != j else 0)
+        value = single(spaces[max(i, j)], spaces[min(i, j)]) if i != j else 0
+        assert result.upper[i, j] == result.lower[i, j] == value
 
 
 def test_distance_matrix_in_threads_is_the_same():
