@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rinow.kernels._jit import kernel
+from rinow.kernels._jit import kernel, parallel_kernel, prange
 from rinow.kernels.correspondence_tabu import random_below
 
 TRIALS = 16
@@ -203,3 +203,20 @@ def complete(dive, f, g):
             f[v] = partner
         else:
             g[v - n] = partner
+
+
+@kernel
+def _disagrees(X, Y, xs, ys, t, p):
+    """Whether a pair disagrees with some other one."""
+    row_x, row_y = X[xs[p]], Y[ys[p]]
+    for q in range(xs.shape[0]):
+        if abs(row_x[xs[q]] - row_y[ys[q]]) > t:
+            return True
+    return False
+
+
+@parallel_kernel
+def disagreements(X, Y, xs, ys, t, out):
+    """Write for each pair whether it disagrees with some other one."""
+    for p in prange(xs.shape[0]):
+        out[p] = _disagrees(X, Y, xs, ys, t, p)
