@@ -2,14 +2,15 @@
 
     python benchmarks/bench_gromov_hausdorff.py [group ...] [--seeds N] [--seconds S]
 
-Prints instance, lower and upper bound, whether they are equal, what proved the lower one, and seconds.  Groups: plane, space,
-hops, noisy, lipschitz, circle, intervals, meshes; by default all of them.  The correspondence of every result is measured
-again.
+Prints instance, lower and upper bound, whether they are equal, what proved the lower one, and seconds.  Groups:
+plane, space, hops, noisy, lipschitz, circle, intervals, meshes; by default all of them.  The correspondence of every
+result is measured again.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import math
 import time
 from collections.abc import Iterator
@@ -64,7 +65,7 @@ def sphere_net(rng: np.random.Generator | None, n: int) -> rinow.MetricSpace:
 def hops(graph: nx.Graph) -> rinow.MetricSpace:
     """Numbers of steps between the nodes; components are joined by an edge."""
     parts = [min(c) for c in nx.connected_components(graph)]
-    graph.add_edges_from(zip(parts, parts[1:], strict=False))
+    graph.add_edges_from(itertools.pairwise(parts))
     return rinow.MetricSpace(shortest_path(nx.to_scipy_sparse_array(graph), directed=False, unweighted=True))
 
 
