@@ -11,10 +11,13 @@ from typing import Any
 from rinow._version import __version__
 
 _HOME = {
+    "Approximation": "comparison.approximation",
     "ConvergenceError": "errors",
     "CurvatureFit": "embedding.point_set",
+    "DistanceMatrix": "comparison.collection",
     "EmbeddingCurvatures": "embedding.quadruple",
     "ExactGeodesics": "geodesics.exact",
+    "EpsilonIsometry": "comparison.approximation",
     "FileFormatError": "errors",
     "EpsilonGraph": "nets.epsilon_graph",
     "FarthestPointNet": "nets.farthest_point",
@@ -74,7 +77,10 @@ _HOME = {
     "geodesic_distances": "geodesics.distances",
     "geodesic_space": "geodesics.distances",
     "dilatation": "comparison.lipschitz",
+    "distance_matrix": "comparison.collection",
     "distortion": "comparison.correspondence",
+    "find_approximation": "comparison.approximation",
+    "find_epsilon_isometry": "comparison.approximation",
     "gromov_hausdorff": "comparison.gromov_hausdorff",
     "lipschitz_distance": "comparison.lipschitz",
     "uniform_distance": "comparison.correspondence",

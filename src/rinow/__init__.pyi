@@ -1,5 +1,11 @@
 from rinow import errors as errors
 from rinow._version import __version__ as __version__
+from rinow.comparison.approximation import Approximation as Approximation
+from rinow.comparison.approximation import EpsilonIsometry as EpsilonIsometry
+from rinow.comparison.approximation import find_approximation as find_approximation
+from rinow.comparison.approximation import find_epsilon_isometry as find_epsilon_isometry
+from rinow.comparison.collection import DistanceMatrix as DistanceMatrix
+from rinow.comparison.collection import distance_matrix as distance_matrix
 from rinow.comparison.correspondence import distortion as distortion
 from rinow.comparison.correspondence import uniform_distance as uniform_distance
 from rinow.comparison.gromov_hausdorff import GromovHausdorff as GromovHausdorff

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow.comparison import bounds, steps
+from rinow.comparison import bounds, large, steps
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import RELATION, Engine, worst_of
 from rinow.comparison.interval import Interval
+from rinow.comparison.surfaces import eccentricity_gap, sample_of
 from rinow.errors import InvalidInputError
-from rinow.metric_space import MetricSpace, as_metric_space
+from rinow.metric_space import MetricSpace
 
 __all__ = ["GromovHausdorff", "MetricSpace", "gromov_hausdorff"]
 
@@ -32,7 +33,8 @@ class GromovHausdorff:
     exact : bool
         Whether the two are equal.
     correspondence : (k, 2) ndarray of int
-        Pairs (x, y) that cover both spaces; half their distortion is `upper`.
+        Pairs (x, y) that cover both spaces; half their distortion is `upper`.  For a mesh of more than 3000 vertices
+        they cover a net, and `upper` is half their distortion plus the covering radii.
     lower_bound_by : str
         What proved `lower`: "non-negativity", "diameter", "eccentricities", "packing", "sorted distances", "arc
         consistency", "search" or "satisfiability".
@@ -43,6 +45,7 @@ class GromovHausdorff:
     exact: bool
     correspondence: Indices
     lower_bound_by: str
+    covering_radii: tuple[float, float] = (0.0, 0.0)
 
 
 def gromov_hausdorff(X: Any, Y: Any, *, time_limit: float = 60.0, rtol: float = 0.0) -> GromovHausdorff:
@@ -53,8 +56,10 @@ def gromov_hausdorff(X: Any, Y: Any, *, time_limit: float = 60.0, rtol: float = 
 
     Parameters
     ----------
-    X, Y : MetricSpace or (n, n) array_like of float
-        Two finite metric spaces, or their distance matrices, in one unit of length; repeated points are allowed.
+    X, Y : MetricSpace, (n, n) array_like of float, or mesh
+        Two finite metric spaces, or their distance matrices, in one unit of length; repeated points are allowed.  A
+        mesh (`TriangleMesh`, `IntrinsicMesh`, ``(V, F)`` pair or object with vertices and faces) stands for its
+        vertices with the lengths of the shortest paths along edges; vertices without a face are left out.
     time_limit : float, default 60
         Seconds after which the search stops with the bounds reached so far; with 0 the bounds that cost no search.
         One step may overrun it by some tenths of a second.
@@ -72,7 +77,8 @@ def gromov_hausdorff(X: Any, Y: Any, *, time_limit: float = 60.0, rtol: float = 
     InvalidInputError
         If an argument is not a space, is empty, or a limit is negative or nan.
     NotAMetricError
-        If a matrix is not a metric; build a `MetricSpace` with another `rtol` where that is wanted.
+        If a matrix is not a metric; build a `MetricSpace` with another `rtol` where that is wanted.  If the faces of a
+        mesh are not connected.
 
     See Also
     --------
@@ -104,14 +110,32 @@ def gromov_hausdorff(X: Any, Y: Any, *, time_limit: float = 60.0, rtol: float = 
     clock = Clock.of(time_limit)
     if not 0.0 <= rtol < 1.0:
         raise InvalidInputError(f"rtol = {rtol} is not a relative tolerance; give a number from 0 to below 1.")
-    DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
+    samples = sample_of(X, clock.part(0.25 * clock.left)), sample_of(Y, clock.part(0.25 * clock.left))
+    interval = _compare(samples[0].distances, samples[1].distances, clock, rtol)
+    radii = samples[0].covering_radius, samples[1].covering_radius
+    lower, upper, exact, by = 0.5 * interval.lower, 0.5 * interval.upper, interval.exact, interval.by
+    if sum(radii) > 0.0:
+        lower, upper, exact = lower - sum(radii), upper + sum(radii), False
+        by_eccentricities = 0.5 * eccentricity_gap(*samples)
+        if by_eccentricities >= lower:
+            lower, by = by_eccentricities, "eccentricities"
+    pairs = np.stack([samples[0].indices[interval.pairs[:, 0]], samples[1].indices[interval.pairs[:, 1]]], axis=1)
+    return GromovHausdorff(lower, upper, exact, pairs, by, radii)
+
+
+def _compare(DX: Floats, DY: Floats, clock: Clock, rtol: float) -> Interval:
+    """The interval of the distortion of two spaces of which all distances are known."""
     interval = first_interval(DX, DY, rtol)
-    if not interval.closed and not clock.over:
+    if interval.closed or clock.over:
+        return interval
+    interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
+    if len(DX) * len(DY) * (len(DX) + len(DY)) < large.LARGE:
         engine = Engine(DX, DY)
         interval.raise_lower(engine.row_bound, "sorted distances")
-        interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
         steps.close(engine, interval, clock)
-    return GromovHausdorff(0.5 * interval.lower, 0.5 * interval.upper, interval.exact, interval.pairs, interval.by)
+    else:
+        large.approach(DX, DY, interval, clock)
+    return interval
 
 
 def first_interval(DX: Floats, DY: Floats, rtol: float) -> Interval:

@@ -50,6 +50,7 @@ class Satisfiability:
         level: float,
         clock: Clock,
         isometries: tuple[Isometries, Isometries] | None = None,
+        near: tuple[Flags, Flags] | None = None,
     ) -> None:
         from pysat.solvers import Solver  # the import takes long
 
@@ -62,9 +63,7 @@ class Satisfiability:
         variables[possible] = np.arange(1, len(self.pairs) + 1)
         self.ready = len(self.pairs) <= LARGEST_VARIABLES
         if self.ready:
-            self._add(row[row > 0].tolist() for row in variables)
-            if engine.both:
-                self._add(column[column > 0].tolist() for column in variables.T)
+            self._cover(variables, near)
             self._break_symmetry(variables, isometries)
             self.lower_level(level, clock)
 
@@ -105,6 +104,16 @@ class Satisfiability:
             spent = clock.elapsed - before
             self._conflicts = max(20, int(self._conflicts * min(2.0, 0.3 / max(spent, 1e-3))))
         return False, None
+
+    def _cover(self, variables: Indices, near: tuple[Flags, Flags] | None) -> None:
+        """A pair for every point that must be covered, or for some point near it."""
+        if near is None:
+            self._add(row[row > 0].tolist() for row in variables)
+            if self.engine.both:
+                self._add(column[column > 0].tolist() for column in variables.T)
+            return
+        for close, table in zip(near, (variables, variables.T), strict=True):
+            self._add(table[ball][table[ball] > 0].tolist() for ball in close)
 
     def _add(self, clauses: Iterable[list[int]]) -> None:
         self._solver.append_formula(clauses)

@@ -21,13 +21,16 @@ Indices = NDArray[np.intp]
 Flags = NDArray[np.bool_]
 Symmetries = tuple[Isometries, Isometries]
 
+STARTS, MOVES = 12, 40
+"""Tabu searches before the exact one, and moves of each for every point."""
+
 BISECTION = 2e-3
 """The bound of arc consistency is found to this share of itself."""
 
 
 def close(engine: Engine, interval: Interval, clock: Clock) -> None:
     """All steps in turn, until the interval is closed or the time is over."""
-    warm_start(engine, interval, clock.part(0.2 * clock.left), n_starts=4, n_moves=20 * sum(engine.shape))
+    warm_start(engine, interval, clock.part(0.15 * clock.left))
     if interval.closed:
         return
     symmetries = isometries(engine.DX), isometries(engine.DY)
@@ -43,14 +46,22 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
         branch_and_bound(engine, interval, clock, possible, symmetries)
 
 
-def warm_start(engine: Engine, interval: Interval, clock: Clock, *, n_starts: int, n_moves: int) -> None:
-    """Tabu search from several starts: the rows that agree best, then random maps."""
+def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: float = 0.0) -> None:
+    """Tabu search from several starts: the rows that agree best, then random maps.
+
+    Nearly isometric spaces are done after the first: arc consistency refutes what is below.
+    """
     rng = np.random.default_rng(20)
-    for search in _searches(engine, rng):
-        search.run(n_moves, clock, interval.lower)
+    for k, search in enumerate(_searches(engine, rng)):
+        search.run(MOVES * sum(engine.shape), clock, max(target, interval.lower))
         interval.offer(search.pairs, search.best)
-        n_starts -= 1
-        if interval.closed or clock.over or n_starts == 0:
+        if interval.upper <= target:
+            return
+        if k == 0 and not interval.closed:
+            level = interval.wanted
+            if engine.consistent(level, clock) is None:
+                interval.refuted(level, engine, "arc consistency")
+        if interval.closed or clock.over or k + 1 == STARTS:
             return
 
 

@@ -135,6 +135,8 @@ def _recall(problem, relation, queue, stack, progress):
     for d in range(depth):
         x, y = stack.decisions[d, 0], stack.decisions[d, 1]
         alive = restrict(relation, queue, problem.runs, problem.X, problem.Y, x, y, problem.both) and alive
+    for d in range(depth):  # two decisions may disagree at the new level
+        alive = alive and contains(relation.rows[stack.decisions[d, 0]], stack.decisions[d, 1])
     mark_all(queue)
     return alive
 

@@ -1,0 +1,207 @@
+"""Gromov-Hausdorff and Lipschitz distance: what is exact, what stays open, and how long it takes.
+
+    python benchmarks/bench_gromov_hausdorff.py [group ...] [--seeds N] [--seconds S]
+
+Prints instance, lower and upper bound, whether they are equal, what proved the lower one, and seconds.  Groups:
+plane, space, hops, noisy, lipschitz, circle, intervals, meshes; by default all of them.  The correspondence of every
+result is measured again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import math
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import networkx as nx
+import numpy as np
+from scipy.sparse.csgraph import shortest_path
+
+import rinow
+
+Instance = tuple[str, Any, Any]
+
+
+def cloud(rng: np.random.Generator, n: int, dimension: int = 2) -> rinow.MetricSpace:
+    """Points of the unit cube."""
+    return rinow.MetricSpace.from_points(rng.random((n, dimension)))
+
+
+def noisy(rng: np.random.Generator, n: int, sigma: float = 0.01) -> tuple[rinow.MetricSpace, rinow.MetricSpace]:
+    """Points of the unit square and their shuffled copy with noise."""
+    points = rng.random((n, 2))
+    moved = rng.permutation(points) + rng.normal(0, sigma, points.shape)
+    return rinow.MetricSpace.from_points(points), rinow.MetricSpace.from_points(moved)
+
+
+def polygon(n: int) -> rinow.MetricSpace:
+    """Vertices of a regular polygon with the arc metric."""
+    steps = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    return rinow.MetricSpace(np.minimum(steps, n - steps) * (2 * math.pi / n))
+
+
+def sphere_net(rng: np.random.Generator | None, n: int) -> rinow.MetricSpace:
+    """Points of the unit sphere with the geodesic metric: a Fibonacci net, or farthest points of a random set."""
+    k = 4000 if rng else n
+    z = 1 - (2 * np.arange(k) + 1) / k
+    angle = math.pi * (1 + math.sqrt(5)) * np.arange(k)
+    P = np.stack([np.sqrt(1 - z * z) * np.cos(angle), np.sqrt(1 - z * z) * np.sin(angle), z], axis=1)
+    if rng:
+        chosen = [int(rng.integers(k))]
+        nearest = P @ P[chosen[0]]
+        while len(chosen) < n:
+            chosen.append(int(nearest.argmin()))
+            nearest = np.maximum(nearest, P @ P[chosen[-1]])
+        P = P[chosen]
+    D = np.arccos(np.clip(P @ P.T, -1, 1))
+    D = (D + D.T) / 2
+    np.fill_diagonal(D, 0)
+    return rinow.MetricSpace(D)
+
+
+def hops(graph: nx.Graph) -> rinow.MetricSpace:
+    """Numbers of steps between the nodes; components are joined by an edge."""
+    parts = [min(c) for c in nx.connected_components(graph)]
+    graph.add_edges_from(itertools.pairwise(parts))
+    return rinow.MetricSpace(shortest_path(nx.to_scipy_sparse_array(graph), directed=False, unweighted=True))
+
+
+GRAPHS = {
+    "tree": lambda n, s: nx.random_labeled_tree(n, seed=s),
+    "G(n,.05)": lambda n, s: nx.gnp_random_graph(n, 0.05, seed=s),
+    "geometric": lambda n, s: nx.random_geometric_graph(n, 0.18, seed=s),
+    "small world": lambda n, s: nx.connected_watts_strogatz_graph(n, 4, 0.3, seed=s),
+}
+
+
+def plane(seed: int) -> Iterator[Instance]:
+    """Unrelated clouds of the plane."""
+    for n in (100, 200):
+        rng = np.random.default_rng(1000 + seed)
+        yield f"R2 n={n}", cloud(rng, n), cloud(rng, n)
+
+
+def space(seed: int) -> Iterator[Instance]:
+    """Unrelated clouds of space."""
+    for n in (45, 100):
+        rng = np.random.default_rng(1000 + seed)
+        yield f"R3 n={n}", cloud(rng, n, 3), cloud(rng, n, 3)
+
+
+def hop_metrics(seed: int) -> Iterator[Instance]:
+    """Random graphs of several kinds."""
+    for n in (100, 200):
+        for name, make in GRAPHS.items():
+            yield f"{name} n={n}", hops(make(n, seed)), hops(make(n, seed + 100))
+
+
+def noisy_copies(seed: int) -> Iterator[Instance]:
+    """Nearly isometric clouds."""
+    for n in (200, 500):
+        yield (f"noisy copy n={n}", *noisy(np.random.default_rng(1000 + seed), n))
+
+
+def circle(seed: int) -> Iterator[Instance]:
+    """Homogeneous spaces."""
+    segment = np.abs(np.subtract.outer(*[np.linspace(0, math.pi, 25)] * 2))
+    yield "24-gon / segment", polygon(24), rinow.MetricSpace(segment)
+    yield "24-gon / sphere net", polygon(24), sphere_net(np.random.default_rng(seed), 24)
+    yield "24-gon / Fibonacci net", polygon(24), sphere_net(None, 24)
+
+
+def intervals(seed: int) -> Iterator[Instance]:
+    """Clouds that are too large to close."""
+    rng = np.random.default_rng(1000 + seed)
+    yield "R2 n=500", cloud(rng, 500), cloud(rng, 500)
+
+
+def bipartite(seed: int) -> Iterator[Instance]:
+    """Clouds for the Lipschitz distance."""
+    for n in (45, 60):
+        rng = np.random.default_rng(1000 + seed)
+        yield f"d_L R2 n={n}", cloud(rng, n), cloud(rng, n)
+
+
+def icosphere(levels: int) -> tuple[np.ndarray, np.ndarray]:
+    """A subdivided icosahedron on the unit sphere."""
+    import trimesh
+
+    sphere = trimesh.creation.icosphere(levels)
+    return np.array(sphere.vertices), np.array(sphere.faces)
+
+
+def meshes(seed: int) -> Iterator[Instance]:
+    """Meshes with the metric of their edges, the second one with its vertices shuffled."""
+    rng = np.random.default_rng(seed)
+    V, F = icosphere(4)
+    order = rng.permutation(len(V))
+    yield "sphere / ellipsoid", (V, F), ((V * [1, 1, 0.7])[np.argsort(order)], order[F])
+    u, v = (a.ravel() for a in np.meshgrid(np.linspace(0, 1, 30), np.linspace(0, 2, 60), indexing="ij"))
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(29), np.arange(59), indexing="ij"))
+    k = i * 60 + j
+    F = np.concatenate([np.stack([k, k + 60, k + 61], axis=1), np.stack([k, k + 61, k + 1], axis=1)])
+    flat, bent = np.stack([u, v, 0 * u], axis=1), np.stack([u, np.sin(v), np.cos(v)], axis=1)
+    order = rng.permutation(len(u))
+    yield "flat / bent sheet", (flat, F), (bent[np.argsort(order)], order[F])
+    import trimesh
+
+    torus = trimesh.creation.torus(1, 0.4, major_sections=64, minor_sections=32)
+    yield "torus / sphere", (np.array(torus.vertices), np.array(torus.faces)), icosphere(4)
+
+
+GROUPS = {
+    "plane": plane,
+    "space": space,
+    "hops": hop_metrics,
+    "noisy": noisy_copies,
+    "lipschitz": bipartite,
+    "circle": circle,
+    "intervals": intervals,
+    "meshes": meshes,
+}
+
+
+def show(name: str, seed: int, X: Any, Y: Any, seconds: float) -> None:
+    """Compare two spaces and print one line."""
+    start = time.perf_counter()
+    if name.startswith("d_L"):
+        result: Any = rinow.lipschitz_distance(X, Y, time_limit=seconds)
+        f = result.bijection
+        measured = math.log(max(rinow.dilatation(f, X, Y), rinow.dilatation(np.argsort(f), Y, X)))
+    else:
+        result = rinow.gromov_hausdorff(X, Y, time_limit=seconds)
+        spaces = isinstance(X, rinow.MetricSpace)
+        measured = rinow.distortion(result.correspondence, X, Y) / 2 if spaces else result.upper
+    spent = time.perf_counter() - start
+    if measured != result.upper:
+        raise SystemExit(f"{name}: the certificate gives {measured}, not {result.upper}")
+    state = "exact" if result.exact else f"ratio {result.upper / max(result.lower, 1e-300):.4f}"
+    print(
+        f"{name:24s} {seed:2d} {result.lower:11.6f} {result.upper:11.6f} {state:14s} "
+        f"{result.lower_bound_by:18s} {spent:6.1f} s",
+        flush=True,
+    )
+
+
+def main() -> None:
+    """Run the groups that are asked for."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("groups", nargs="*", default=list(GROUPS))
+    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    options = parser.parse_args()
+    rng = np.random.default_rng(2)
+    for small in (12, 90):  # warms the kernels, serial and parallel
+        rinow.gromov_hausdorff(cloud(rng, small), cloud(rng, small), time_limit=5)
+        rinow.lipschitz_distance(cloud(rng, small), cloud(rng, small), time_limit=2)
+    for group in options.groups:
+        for seed in range(options.seeds):
+            for name, X, Y in GROUPS[group](seed):
+                show(name, seed, X, Y, options.seconds)
+
+
+if __name__ == "__main__":
+    main()

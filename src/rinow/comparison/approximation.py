@@ -1,0 +1,231 @@
+"""ε-isometries and (ε, δ)-approximations between finite metric spaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.comparison import bounds, steps
+from rinow.comparison.clock import Clock
+from rinow.comparison.engine import MAP, RELATION, Engine, worst_of
+from rinow.comparison.gromov_hausdorff import first_interval
+from rinow.comparison.interval import Interval
+from rinow.comparison.satisfiability import Satisfiability, solver_installed
+from rinow.errors import InvalidInputError
+from rinow.metric_space import MetricSpace, as_metric_space
+
+__all__ = ["Approximation", "EpsilonIsometry", "MetricSpace", "find_approximation", "find_epsilon_isometry"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EpsilonIsometry:
+    """Whether an ε-isometry exists, and one.
+
+    Attributes
+    ----------
+    found : bool or None
+        True with a map, False when there is none, None when the time was over before either was proved.
+    map : (n,) ndarray of int
+        Image in Y of each point of X; empty unless `found` is true.
+    """
+
+    found: bool | None
+    map: Indices
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Approximation:
+    """Whether two spaces are (ε, δ)-approximations of each other, and the nets that show it.
+
+    Attributes
+    ----------
+    found : bool or None
+        True with the nets, False when there are none, None when the time was over before either was proved.
+    pairs : (k, 2) ndarray of int
+        Points of the two nets that correspond; empty unless `found` is true.
+    """
+
+    found: bool | None
+    pairs: Indices
+
+
+def find_epsilon_isometry(X: Any, Y: Any, epsilon: float, *, time_limit: float = 60.0) -> EpsilonIsometry:
+    r"""Find a map that changes no distance by more than ε and comes within ε of every point.
+
+    Parameters
+    ----------
+    X, Y : MetricSpace or square array_like of float
+        Two finite metric spaces of n and m points.
+    epsilon : float
+        At least 0, in the unit of the distances; with 0 the map is an isometry.
+    time_limit : float, default 60
+        Seconds after which an undecided search stops.
+
+    Returns
+    -------
+    result : EpsilonIsometry
+        `found` (True, False, or None for undecided) and `map`.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is not a space or is empty, `epsilon` or the limit is negative or nan.
+    NotAMetricError
+        If a matrix is not a metric.
+
+    See Also
+    --------
+    distortion : Recomputes the distortion of the map.
+    find_approximation, gromov_hausdorff
+
+    Notes
+    -----
+    A map f with :math:`\mathrm{dis} f \le \varepsilon` whose image is an ε-net.  Such a map gives
+    :math:`d_{GH} \le 3\varepsilon/2`, and :math:`d_{GH} < \varepsilon/2` gives such a map (Corollary 2.37 of the paper;
+    its proof prints dil for dis).  So a good correspondence answers yes and a lower bound of the distance no; what is
+    left goes to a clause-learning solver.  The relation is not symmetric in X and Y.
+
+    Examples
+    --------
+    A unit segment and the same with its middle point: the middle is missed by 1/2.
+
+    >>> X, Y = [[0, 1], [1, 0]], [[0, 0.5, 1], [0.5, 0, 0.5], [1, 0.5, 0]]
+    >>> find_epsilon_isometry(X, Y, 0.5).map, find_epsilon_isometry(X, Y, 0.4).found
+    (array([0, 2]), False)
+    """
+    clock = Clock.of(time_limit)
+    _check_scale(epsilon, "epsilon")
+    DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
+    near = DY <= epsilon
+    interval = first_interval(DX, DY, 0.0)
+    engine = _improve(DX, DY, interval, clock, wanted=epsilon, hopeless=3.0 * epsilon)
+    if interval.upper <= epsilon:
+        f = np.empty(len(DX), np.intp)
+        f[interval.pairs[:, 0]] = interval.pairs[:, 1]
+        return EpsilonIsometry(True, f)
+    if engine is None or interval.lower > 3.0 * epsilon:
+        return EpsilonIsometry(False if interval.lower > 3.0 * epsilon else None, np.empty(0, np.intp))
+    found, pairs = _decide(Engine(DX, DY, MAP, both=False), epsilon, clock, np.eye(len(DX), dtype=bool), near)
+    return EpsilonIsometry(found, pairs[:, 1] if found else np.empty(0, np.intp))
+
+
+def find_approximation(X: Any, Y: Any, epsilon: float, delta: float, *, time_limit: float = 60.0) -> Approximation:
+    r"""Find nets of two spaces that correspond to each other: whether they are (ε, δ)-approximations.
+
+    Parameters
+    ----------
+    X, Y : MetricSpace or square array_like of float
+        Two finite metric spaces.
+    epsilon : float
+        Largest distance of a point from the net of its space, at least 0.
+    delta : float
+        Above 0; distances of corresponding points differ by less than this.
+    time_limit : float, default 60
+        Seconds after which an undecided search stops.
+
+    Returns
+    -------
+    result : Approximation
+        `found` (True, False, or None for undecided) and `pairs` of points of the nets.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is not a space or is empty, `epsilon` is negative, `delta` not positive, or the limit negative.
+    NotAMetricError
+        If a matrix is not a metric.
+
+    See Also
+    --------
+    distortion : Recomputes how well the nets agree.
+    find_epsilon_isometry, gromov_hausdorff
+
+    Notes
+    -----
+    Points :math:`x_i` and :math:`y_i`, i = 1 … N, form ε-nets of X and of Y with
+    :math:`|d(x_i, x_j) - d(y_i, y_j)| < \delta` (Definition 2.41 of the paper); points may be repeated.  Then
+    :math:`d_{GH} \le 2\varepsilon + \delta/2`, and :math:`d_{GH} < \varepsilon` makes them
+    :math:`(5\varepsilon, 5\varepsilon)`-approximations (Proposition 2.42).
+
+    Examples
+    --------
+    Eleven points of a unit segment are approximated by three of them:
+
+    >>> line = np.abs(np.subtract.outer(np.linspace(0, 1, 11), np.linspace(0, 1, 11)))
+    >>> ends = line[::5, ::5]
+    >>> find_approximation(line, ends, 0.25, 0.01).found, find_approximation(line, ends, 0.1, 0.01).found
+    (True, False)
+    """
+    clock = Clock.of(time_limit)
+    _check_scale(epsilon, "epsilon")
+    if not delta > 0.0:
+        raise InvalidInputError(f"delta = {delta} is not a positive length; distances must differ by less than it.")
+    DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
+    level = float(np.nextafter(delta, 0.0))
+    net_x, net_y = _net(DX, epsilon), _net(DY, epsilon)
+    NX, NY = DX[np.ix_(net_x, net_x)], DY[np.ix_(net_y, net_y)]
+    on_nets = first_interval(NX, NY, 0.0)
+    _improve(NX, NY, on_nets, clock.part(0.3 * clock.left), wanted=level, hopeless=level)
+    if on_nets.upper <= level:
+        return Approximation(True, np.stack([net_x[on_nets.pairs[:, 0]], net_y[on_nets.pairs[:, 1]]], axis=1))
+    interval = first_interval(DX, DY, 0.0)
+    engine = _improve(DX, DY, interval, clock, wanted=level, hopeless=4.0 * epsilon + delta)
+    if interval.upper <= level:
+        return Approximation(True, interval.pairs)
+    if engine is None or interval.lower > 4.0 * epsilon + delta:
+        return Approximation(False if interval.lower > 4.0 * epsilon + delta else None, np.empty((0, 2), np.intp))
+    found, pairs = _decide(Engine(DX, DY, RELATION, both=False), level, clock, DX <= epsilon, DY <= epsilon)
+    return Approximation(found, pairs)
+
+
+def _check_scale(value: float, name: str) -> None:
+    if not value >= 0.0:
+        raise InvalidInputError(f"{name} = {value} is not a length; give a number >= 0.")
+
+
+def _improve(
+    DX: Floats, DY: Floats, interval: Interval, clock: Clock, *, wanted: float, hopeless: float
+) -> Engine | None:
+    """Bounds and a tabu search, unless the interval decides already; None if it does or the time is over."""
+    if interval.upper <= wanted or interval.lower > hopeless or clock.over:
+        return None
+    engine = Engine(DX, DY)
+    interval.raise_lower(engine.row_bound, "sorted distances")
+    interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
+    if interval.lower <= hopeless:
+        steps.warm_start(engine, interval, clock.part(0.2 * clock.left), target=wanted)
+    return engine
+
+
+def _net(D: Floats, epsilon: float) -> Indices:
+    """Farthest points in turn until every point is within ε of one."""
+    nearest, chosen = D[0].copy(), [0]
+    while nearest.max() > epsilon:
+        chosen.append(int(nearest.argmax()))
+        np.minimum(nearest, D[chosen[-1]], out=nearest)
+    return np.array(chosen, np.intp)
+
+
+def _decide(engine: Engine, level: float, clock: Clock, near_x: Flags, near_y: Flags) -> tuple[bool | None, Indices]:
+    """Whether pairs within the level exist that come near every point of both spaces, and such pairs."""
+    none = np.empty((0, 2), np.intp)
+    possible = np.ones(engine.shape, np.bool_)
+    if engine.kind == MAP:  # every point has an image, so arc consistency over the points of X is right
+        left = engine.consistent(level, clock)
+        if left is None:
+            return False, none
+        possible = left
+    if not solver_installed() or clock.over:
+        return None, none
+    with Satisfiability(engine, possible, level, clock, near=(near_x, near_y)) as solver:
+        refuted, pairs = solver.run(clock)
+    if pairs is not None and worst_of(engine.kind, engine.DX, engine.DY, pairs) <= level:
+        return True, pairs
+    return (False if refuted else None), none

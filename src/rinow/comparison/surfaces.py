@@ -1,0 +1,143 @@
+"""Meshes as metric spaces: all vertices where that is affordable, else a net with its true covering radius."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import dijkstra
+
+from rinow import tolerances
+from rinow.comparison.clock import Clock
+from rinow.errors import NotAMetricError
+from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh
+from rinow.metric_space import as_metric_space
+
+__all__ = ["Sample", "eccentricity_gap", "sample_of"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+ALL_VERTICES = 3000
+"""Vertices up to which all distances of a mesh are computed: 72 MB."""
+
+LARGEST_NET, NET_BYTES = 600, 1 << 28
+"""Points of a net, and memory for their distances to all vertices."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sample:
+    """Points of a space and their distances to all its points.
+
+    Attributes
+    ----------
+    indices : (k,) ndarray of int
+        The chosen points as vertices of the mesh or points of the space.
+    rows : (k, n) ndarray of float
+        Distances to the n points of the space.
+    distances : (k, k) ndarray of float
+        Distances between the chosen points.
+    covering_radius : float
+        Greatest distance of a point from the nearest chosen one; 0 if all were chosen.
+    """
+
+    indices: Indices
+    rows: Floats
+    distances: Floats
+    covering_radius: float
+
+    @property
+    def eccentricity_bounds(self) -> tuple[Floats, Floats]:
+        """(n,) each: bounds of the eccentricity of every point of the space; equal where all points were chosen."""
+        if self.covering_radius == 0.0 and len(self.rows) == self.rows.shape[1]:
+            return self.rows.max(axis=1), self.rows.max(axis=1)
+        own = self.rows.max(axis=1)[:, None]
+        low = np.maximum(self.rows.max(axis=0), (own - self.rows).max(axis=0))
+        return low, (own + self.rows).min(axis=0)
+
+
+def is_mesh(thing: Any) -> bool:
+    """Whether something is a mesh, a ``(V, F)`` pair or an object with vertices and faces, not a space or a matrix."""
+    if isinstance(thing, tuple):
+        return len(thing) == 2 and np.ndim(thing[1]) == 2
+    return isinstance(thing, TriangleMesh | IntrinsicMesh) or hasattr(thing, "faces") or hasattr(thing, "regular_faces")
+
+
+def sample_of(thing: Any, clock: Clock) -> Sample:
+    """All points of a space or small mesh, or a net of a large mesh that grows while there is time.
+
+    Raises
+    ------
+    InvalidInputError
+        If it is neither a space nor a mesh.
+    NotAMetricError
+        If a matrix is not a metric, or the faces of a mesh are not connected.
+    """
+    if not is_mesh(thing):
+        D = as_metric_space(thing).distances
+        return Sample(np.arange(len(D)), D, D, 0.0)
+    graph, vertices = _edge_graph(as_mesh(thing))
+    if len(vertices) <= ALL_VERTICES:
+        D = dijkstra(graph)
+        _check_connected(D[0], vertices)
+        D = np.minimum(D, D.T)
+        return Sample(vertices, D, D, 0.0)
+    return _net(graph, vertices, clock)
+
+
+def eccentricity_gap(X: Sample, Y: Sample) -> float:
+    """Lower bound of the distortion: every chosen point has a partner whose eccentricity differs by no more than it."""
+    return max(_one_sided(X, Y), _one_sided(Y, X))
+
+
+def _one_sided(X: Sample, Y: Sample) -> float:
+    low, high = Y.eccentricity_bounds
+    gaps = [float(np.maximum(low - e, e - high).min()) for e in X.rows.max(axis=1)]
+    slack = 0.0 if Y.covering_radius == 0.0 else tolerances.COMPARISON * float(high.max())
+    return max(0.0, max(gaps) - slack)
+
+
+def _edge_graph(mesh: TriangleMesh | IntrinsicMesh) -> tuple[csr_array, Indices]:
+    """The edges of a mesh between the vertices that have a face with finite sides, and these vertices."""
+    lengths, ends = mesh.edge_lengths, np.roll(mesh.faces, -1, axis=1)
+    tails, heads = ends.ravel(), np.roll(ends, -1, axis=1).ravel()
+    finite = np.isfinite(lengths).ravel()
+    vertices, places = np.unique(np.concatenate([tails[finite], heads[finite]]), return_inverse=True)
+    i, j = places.reshape(2, -1)
+    order = np.lexsort((lengths.ravel()[finite], j, i))
+    _, first = np.unique((i * len(vertices) + j)[order], return_index=True)
+    kept = order[first]
+    shape = (len(vertices), len(vertices))
+    half = coo_array((lengths.ravel()[finite][kept], (i[kept], j[kept])), shape=shape).tocsr()
+    return csr_array(half.maximum(half.T)), vertices
+
+
+def _check_connected(row: Floats, vertices: Indices) -> None:
+    apart = np.flatnonzero(np.isinf(row))
+    if len(apart):
+        raise NotAMetricError(
+            f"mesh has no path from vertex {vertices[0]} to vertex {vertices[apart[0]]}; take one component.",
+            (int(vertices[0]), int(vertices[apart[0]])),
+        )
+
+
+def _net(graph: csr_array, vertices: Indices, clock: Clock) -> Sample:
+    """Farthest points in turn, with their distances to all vertices."""
+    size = max(2, min(LARGEST_NET, NET_BYTES // (8 * len(vertices))))
+    rows, chosen = np.empty((size, len(vertices))), [0]
+    nearest = np.full(len(vertices), np.inf)
+    for k in range(size):
+        rows[k] = dijkstra(graph, indices=chosen[k])
+        if k == 0:
+            _check_connected(rows[0], vertices)
+        np.minimum(nearest, rows[k], out=nearest)
+        if k + 1 == size or (clock.over and k > 0):
+            break
+        chosen.append(int(nearest.argmax()))
+    rows = rows[: len(chosen)]
+    distances = rows[:, chosen]
+    distances = np.minimum(distances, distances.T)
+    return Sample(vertices[chosen], rows, distances, float(nearest.max()))

@@ -1,0 +1,202 @@
+"""Gromov-Hausdorff distance: brute force, closed forms, certificates, anytime bounds, bad input."""
+
+import json
+import math
+from pathlib import Path
+
+import numba
+import numpy as np
+import pytest
+from scipy.sparse.csgraph import shortest_path
+from scipy.spatial.distance import pdist, squareform
+
+from naive import correspondences as naive
+from rinow import MetricSpace, distortion, gromov_hausdorff
+from rinow.comparison.bounds import diameter_bound, eccentricity_bound, packing_bound
+from rinow.comparison.engine import Engine
+from rinow.errors import InvalidInputError, NotAMetricError
+
+GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "gromov_hausdorff.json").read_text())
+SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes")
+
+
+def random_space(rng, n):
+    """Distances of n random points: plane, line with repeated points, hops in a graph, or generic."""
+    kind = rng.integers(4)
+    if kind == 0:
+        return squareform(pdist(rng.random((n, 2)))) if n > 1 else np.zeros((1, 1))
+    if kind == 1:
+        places = rng.integers(0, 5, n).astype(float)
+        return np.abs(places[:, None] - places)
+    if kind == 2:
+        edges = np.triu((rng.random((n, n)) < 0.3).astype(float), 1)
+        for i in range(1, n):
+            edges[rng.integers(i), i] = 1.0
+        return shortest_path(edges, directed=False, unweighted=True)
+    D = rng.uniform(0.5, 1.0, (n, n))
+    D = np.minimum(D, D.T)
+    np.fill_diagonal(D, 0.0)
+    return D
+
+
+def polygon(n):
+    """Vertices of a regular polygon with the arc metric of the unit circle."""
+    steps = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    return np.minimum(steps, n - steps) * (2 * math.pi / n)
+
+
+def segment(n, length):
+    """Equally spaced points of a segment."""
+    return np.abs(np.subtract.outer(*[np.linspace(0, length, n)] * 2))
+
+
+def check_certificate(result, X, Y):
+    """The correspondence covers both spaces, and half its distortion is the upper bound."""
+    assert set(result.correspondence[:, 0]) == set(range(len(X)))
+    assert set(result.correspondence[:, 1]) == set(range(len(Y)))
+    assert distortion(result.correspondence, X, Y) == 2 * result.upper
+    assert 0 <= result.lower <= result.upper
+
+
+@pytest.mark.parametrize("seed", range(60, 90))
+def test_equals_brute_force(seed):
+    rng = np.random.default_rng(seed)
+    X, Y = (random_space(rng, n) for n in rng.integers(1, 5, 2))
+    result = gromov_hausdorff(X, Y)
+    check_certificate(result, X, Y)
+    assert result.exact
+    assert result.lower == result.upper == naive.least_distortion(X.tolist(), Y.tolist()) / 2
+
+
+@pytest.mark.parametrize("case", GOLDEN, ids=lambda case: str(case["name"]))
+def test_known_values(case):
+    X, Y = np.array(case["DX"]), np.array(case["DY"])
+    result = gromov_hausdorff(X, Y)
+    check_certificate(result, X, Y)
+    assert result.exact
+    assert abs(result.upper - case["value"]) <= 1e-12  # the closed forms are rounded
+
+
+@pytest.mark.parametrize("m", [4, 8, 12])
+def test_polygon_and_next_polygon(m):
+    """Regular m-gon and (m+1)-gon are at distance π/(m + 1)."""
+    result = gromov_hausdorff(polygon(m), polygon(m + 1))
+    assert result.exact
+    assert abs(result.upper - math.pi / (m + 1)) < 1e-12
+
+
+@SLOW
+def test_polygon_and_segment_need_clause_learning():
+    """A circle is not a segment: parity forbids what arc consistency lets pass."""
+    X, Y = polygon(16), segment(17, math.pi)
+    result = gromov_hausdorff(X, Y)
+    check_certificate(result, X, Y)
+    assert result.exact
+    assert result.lower_bound_by in ("search", "satisfiability")
+
+
+@SLOW
+@pytest.mark.parametrize("n", [30, 60])
+def test_random_clouds_are_closed(n):
+    rng = np.random.default_rng(n)
+    X, Y = MetricSpace.from_points(rng.random((n, 2))), MetricSpace.from_points(rng.random((n - 5, 2)))
+    result = gromov_hausdorff(X, Y)
+    check_certificate(result, X, Y)
+    assert result.exact
+    again = gromov_hausdorff(Y, X)
+    assert again.upper == result.upper
+
+
+@SLOW
+def test_noisy_shuffled_copy():
+    rng = np.random.default_rng(24)
+    points = rng.random((80, 2))
+    X = MetricSpace.from_points(points)
+    Y = MetricSpace.from_points(rng.permutation(points) + rng.normal(0, 0.003, points.shape))
+    result = gromov_hausdorff(X, Y)
+    assert result.exact
+    assert result.upper < 0.02  # twice the largest of 160 normal deviates
+
+
+def test_scaling_and_isometry():
+    rng = np.random.default_rng(9)
+    X, Y = random_space(rng, 6), random_space(rng, 5)
+    value = gromov_hausdorff(X, Y).upper
+    order = rng.permutation(6)
+    assert gromov_hausdorff(X[np.ix_(order, order)], Y).upper == value
+    assert gromov_hausdorff(4 * X, 4 * Y).upper == 4 * value
+    assert gromov_hausdorff(X, X[np.ix_(order, order)]).upper == 0.0
+
+
+def test_triangle_inequality_between_spaces():
+    rng = np.random.default_rng(31)
+    X, Y, Z = (random_space(rng, n) for n in (5, 4, 6))
+    xy, yz, xz = gromov_hausdorff(X, Y).upper, gromov_hausdorff(Y, Z).upper, gromov_hausdorff(X, Z).upper
+    assert xz <= xy + yz + 1e-12
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_bounds_lie_below_and_the_largest_diameter_above(seed):
+    rng = np.random.default_rng(500 + seed)
+    X, Y = random_space(rng, 7), random_space(rng, 5)
+    exact = 2 * gromov_hausdorff(X, Y).upper
+    for bound in (diameter_bound, eccentricity_bound, packing_bound):
+        assert bound(X, Y) <= exact
+    assert Engine(X, Y).row_bound <= exact <= max(X.max(), Y.max())
+
+
+def test_no_time_gives_bounds_at_once():
+    rng = np.random.default_rng(12)
+    X, Y = (MetricSpace.from_points(rng.random((n, 2))) for n in (60, 50))
+    result = gromov_hausdorff(X, Y, time_limit=0)
+    check_certificate(result, X, Y)
+    assert not result.exact
+    assert result.lower_bound_by in ("diameter", "eccentricities")
+
+
+def test_relative_tolerance_stops_early():
+    rng = np.random.default_rng(13)
+    X, Y = (MetricSpace.from_points(rng.random((20, 2))) for _ in range(2))
+    result, exact = gromov_hausdorff(X, Y, rtol=0.2), gromov_hausdorff(X, Y)
+    assert result.lower <= exact.upper <= result.upper <= 1.25 * result.lower
+
+
+def test_one_point_and_repeated_points():
+    X = squareform(pdist(np.random.default_rng(3).random((6, 2))))
+    assert gromov_hausdorff([[0.0]], X).upper == X.max() / 2
+    doubled = X[np.ix_([0, 0, 1, 2, 3, 4, 5, 5], [0, 0, 1, 2, 3, 4, 5, 5])]
+    assert gromov_hausdorff(X, doubled).upper == 0.0
+    assert gromov_hausdorff([[0.0]], [[0.0]]).exact
+
+
+@pytest.mark.parametrize(
+    ("matrix", "message", "error"),
+    [
+        ([[0, 1], [2, 0]], "differs from its transpose", NotAMetricError),
+        ([[0, -1], [-1, 0]], "is negative", NotAMetricError),
+        ([[0, math.nan], [math.nan, 0]], "is not finite", NotAMetricError),
+        ([[0, 1, 5], [1, 0, 1], [5, 1, 0]], r"distances\[0, 2\] = 5 exceeds", NotAMetricError),
+        (np.empty((0, 0)), "is empty", InvalidInputError),
+        ([[0, 1]], "give a square matrix", InvalidInputError),
+    ],
+)
+def test_bad_spaces(matrix, message, error):
+    with pytest.raises(error, match=message):
+        gromov_hausdorff(matrix, [[0.0]])
+
+
+def test_broken_triangle_names_its_witness_and_may_be_allowed():
+    D = [[0, 1, 2.1], [1, 0, 1], [2.1, 1, 0]]
+    with pytest.raises(NotAMetricError) as caught:
+        gromov_hausdorff([[0.0]], D)
+    assert caught.value.witness == (0, 1, 2)
+    assert gromov_hausdorff([[0.0]], MetricSpace(D, rtol=0.1)).upper == 1.05
+
+
+def test_bad_limits():
+    with pytest.raises(InvalidInputError, match="time_limit = -1"):
+        gromov_hausdorff([[0.0]], [[0.0]], time_limit=-1)
+    with pytest.raises(InvalidInputError, match="time_limit = nan"):
+        gromov_hausdorff([[0.0]], [[0.0]], time_limit=math.nan)
+    with pytest.raises(InvalidInputError, match="rtol = 1"):
+        gromov_hausdorff([[0.0]], [[0.0]], rtol=1.0)

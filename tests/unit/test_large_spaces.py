@@ -1,0 +1,139 @@
+"""Isometries, spaces of many points, and meshes: certificates, nets, faults."""
+
+import math
+
+import numba
+import numpy as np
+import pytest
+from scipy.spatial.distance import pdist, squareform
+
+from rinow import MetricSpace, TriangleMesh, distortion, gromov_hausdorff
+from rinow.comparison import large, surfaces
+from rinow.comparison.clock import Clock
+from rinow.comparison.gromov_hausdorff import first_interval
+from rinow.comparison.large_work import Work
+from rinow.comparison.surfaces import eccentricity_gap, sample_of
+from rinow.comparison.symmetry import isometries
+from rinow.errors import NotAMetricError
+
+SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="dives in plain Python take minutes")
+
+
+def grid(n, height=0.0):
+    """A square sheet of n by n vertices, lifted in its middle."""
+    u, v = (a.ravel() for a in np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n), indexing="ij"))
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(n - 1), np.arange(n - 1), indexing="ij"))
+    k = i * n + j
+    faces = np.concatenate([np.stack([k, k + n, k + n + 1], axis=1), np.stack([k, k + n + 1, k + 1], axis=1)])
+    return np.stack([u, v, height * np.sin(math.pi * u) * np.sin(math.pi * v)], axis=1), faces
+
+
+def test_isometries_of_a_polygon_form_its_dihedral_group():
+    steps = np.abs(np.subtract.outer(np.arange(9), np.arange(9)))
+    D = np.minimum(steps, 9 - steps).astype(float)
+    found = isometries(D)
+    assert len(found.images) == len({tuple(f) for f in found.images}) == 18
+    assert found.error == 0.0
+    for f in found.images:
+        assert (D[np.ix_(f, f)] == D).all()
+    assert len(found.representatives([])) == 1
+    assert len(found.representatives([0])) == 5  # the reflection that fixes 0 joins the other eight in pairs
+
+
+def test_isometries_of_a_generic_space_are_trivial():
+    assert isometries(squareform(pdist(np.random.default_rng(2).random((30, 2))))).trivial
+
+
+def test_isometries_up_to_rounding_know_their_error():
+    angle = np.arange(7) * (2 * math.pi / 7)
+    D = squareform(pdist(np.stack([np.cos(angle), np.sin(angle)], axis=1)))
+    found = isometries(D)
+    assert len(found.images) == 14
+    assert 0 < found.error < 1e-14
+
+
+@SLOW
+def test_dives_find_an_isometry():
+    rng = np.random.default_rng(33)
+    points = rng.random((150, 3))
+    order = rng.permutation(150)
+    X, Y = squareform(pdist(points)), squareform(pdist(points[order] * [1.0, 1.0, 1.02]))
+    interval = first_interval(X, Y, 0.0)
+    before = interval.upper
+    large.approach(X, Y, interval, Clock(3))
+    assert interval.upper == distortion(interval.pairs, X, Y)
+    assert interval.lower <= interval.upper < before / 3
+    truth = distortion(np.stack([order, np.arange(150)], axis=1), X, Y)
+    assert interval.upper <= 2 * truth
+
+
+def test_extended_maps_keep_their_pairs():
+    rng = np.random.default_rng(34)
+    X, Y = squareform(pdist(rng.random((20, 2)))), squareform(pdist(rng.random((25, 2))))
+    xs, ys = np.array([3, 5, 8]), np.array([1, 0, 7])
+    maps = Work(X, Y).extended(xs, ys)
+    assert (maps.f[xs] == ys).all()
+    assert (maps.g[ys] == xs).all()
+    pairs, value = Work(X, Y).measured(maps)
+    assert value == distortion(pairs, X, Y)
+    assert set(pairs[:, 0]) == set(range(20))
+    assert set(pairs[:, 1]) == set(range(25))
+
+
+@SLOW
+def test_shuffled_mesh_is_isometric_to_itself():
+    V, F = grid(6)
+    order = np.random.default_rng(35).permutation(len(V))
+    result = gromov_hausdorff((V, F), TriangleMesh(V[np.argsort(order)], order[F]))
+    assert result.exact
+    assert result.upper == 0.0
+    assert result.covering_radii == (0.0, 0.0)
+
+
+def test_mesh_with_loose_vertices_is_its_used_vertices():
+    V, F = grid(3)
+    loose = np.concatenate([[[9.0, 9.0, 9.0]], V])
+    result = gromov_hausdorff((V, F), (loose, F + 1))
+    assert result.upper == 0.0
+    assert set(result.correspondence[:, 1]) == set(range(1, 10))
+
+
+def test_mesh_in_two_parts():
+    V, F = grid(3)
+    with pytest.raises(NotAMetricError, match="no path from vertex 0 to vertex 9") as caught:
+        gromov_hausdorff((np.concatenate([V, V + 5]), np.concatenate([F, F + 9])), [[0.0]])
+    assert caught.value.witness == (0, 9)
+
+
+@SLOW
+def test_interval_of_nets_contains_the_distance_of_the_meshes(monkeypatch):
+    A, B = grid(6), grid(6, 0.8)
+    exact = gromov_hausdorff(A, B, time_limit=20)
+    monkeypatch.setattr(surfaces, "ALL_VERTICES", 10)
+    monkeypatch.setattr(surfaces, "LARGEST_NET", 14)
+    result = gromov_hausdorff(A, B, time_limit=5)
+    assert not result.exact
+    assert min(result.covering_radii) > 0
+    assert result.lower <= exact.lower
+    assert exact.upper <= result.upper
+    D = [sample_of(mesh, Clock(1)) for mesh in (A, B)]
+    monkeypatch.setattr(surfaces, "ALL_VERTICES", 1000)
+    full = [MetricSpace(sample_of(mesh, Clock(1)).distances) for mesh in (A, B)]
+    spaces = [space.subspace(sample.indices) for space, sample in zip(full, D, strict=True)]
+    half = distortion(
+        [[list(D[0].indices).index(x), list(D[1].indices).index(y)] for x, y in result.correspondence], *spaces
+    )
+    assert result.upper == half / 2 + sum(result.covering_radii)
+
+
+def test_eccentricity_bounds_of_a_net_hold_for_all_vertices(monkeypatch):
+    full = sample_of(grid(7, 0.5), Clock(1))
+    monkeypatch.setattr(surfaces, "ALL_VERTICES", 10)
+    monkeypatch.setattr(surfaces, "LARGEST_NET", 6)
+    net = sample_of(grid(7, 0.5), Clock(1))
+    low, high = net.eccentricity_bounds
+    true = full.distances.max(axis=1)
+    assert (low <= true + 1e-12).all()  # rounding of sums of two distances
+    assert (true <= high + 1e-12).all()
+    assert eccentricity_gap(net, full) <= 1e-12
+    assert net.covering_radius == full.distances[net.indices].min(axis=0).max()

@@ -1,0 +1,118 @@
+"""Lipschitz distance and dilatation: brute force, closed forms, certificates, bad input."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.distance import pdist, squareform
+
+from naive import correspondences as naive
+from rinow import dilatation, lipschitz_distance
+from rinow.comparison.lipschitz import matching_bound
+from rinow.errors import InvalidInputError, NotAMetricError
+
+GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "gromov_hausdorff.json").read_text())
+LINE = [[0, 1, 2], [1, 0, 1], [2, 1, 0]]
+
+
+def cloud(rng, n):
+    """Distances of random points of the plane."""
+    return squareform(pdist(rng.random((n, 2))))
+
+
+def check_certificate(result, X, Y):
+    """The map is a bijection, and the larger dilatation of it and its inverse is the upper bound."""
+    assert sorted(result.bijection) == list(range(len(X)))
+    both = max(dilatation(result.bijection, X, Y), dilatation(np.argsort(result.bijection), Y, X))
+    assert result.upper == math.log(max(both, 1.0))
+    assert 0 <= result.lower <= result.upper
+
+
+@pytest.mark.parametrize("seed", range(70, 90))
+def test_equals_all_permutations(seed):
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 7))
+    X, Y = (np.zeros((1, 1)),) * 2 if n == 1 else (cloud(rng, n), cloud(rng, n))
+    result = lipschitz_distance(X, Y)
+    check_certificate(result, X, Y)
+    assert result.exact
+    assert result.upper == naive.lipschitz_distance(X.tolist(), Y.tolist())
+
+
+@pytest.mark.parametrize("case", [c for c in GOLDEN if c.get("lipschitz")], ids=lambda case: str(case["name"]))
+def test_known_values(case):
+    result = lipschitz_distance(case["DX"], case["DY"])
+    check_certificate(result, case["DX"], case["DY"])
+    assert result.exact
+    assert abs(result.upper - case["lipschitz"]) <= 1e-12  # the logarithm is rounded
+
+
+def test_scaled_space():
+    """A space and its multiple by c are at distance |log c|."""
+    X = cloud(np.random.default_rng(5), 9)
+    assert lipschitz_distance(X, 4 * X).upper == math.log(4)
+    assert lipschitz_distance(X, X / 4).lower == math.log(4)
+
+
+def test_shuffled_copy_is_found():
+    rng = np.random.default_rng(8)
+    X, order = cloud(rng, 25), rng.permutation(25)
+    result = lipschitz_distance(X, X[np.ix_(order, order)])
+    assert result.exact
+    assert result.upper == 0.0
+    assert (order[result.bijection] == np.arange(25)).all()
+
+
+def test_unequal_sizes_are_infinitely_far():
+    result = lipschitz_distance(LINE, [[0, 1], [1, 0]])
+    assert result.lower == result.upper == math.inf
+    assert result.exact
+    assert len(result.bijection) == 0
+    assert result.lower_bound_by == "size"
+
+
+def test_coincident_points_of_one_space_only():
+    result = lipschitz_distance([[0, 0, 1], [0, 0, 1], [1, 1, 0]], LINE)
+    assert result.upper == math.inf
+    both = lipschitz_distance([[0, 0, 1], [0, 0, 1], [1, 1, 0]], [[0, 2, 2], [2, 0, 0], [2, 0, 0]])
+    assert both.exact
+    assert both.upper == math.log(2)
+
+
+def test_no_time_gives_bounds_at_once():
+    rng = np.random.default_rng(6)
+    X, Y = cloud(rng, 30), cloud(rng, 30)
+    result = lipschitz_distance(X, Y, time_limit=0)
+    check_certificate(result, X, Y)
+    assert not result.exact
+
+
+def test_matching_bound_needs_different_images():
+    """Each point has a good image, but two have only the same one."""
+    assert matching_bound(np.array([[1.0, 5.0, 6.0], [1.0, 4.0, 6.0], [9.0, 9.0, 2.0]])) == 4.0
+
+
+def test_dilatation_equals_its_naive_twin_and_composes():
+    rng = np.random.default_rng(17)
+    X, Y, Z = cloud(rng, 6), cloud(rng, 5), cloud(rng, 4)
+    f, g = rng.integers(5, size=6), rng.integers(4, size=5)
+    assert dilatation(f, X, Y) == naive.dilatation(X.tolist(), Y.tolist(), f.tolist())
+    assert dilatation(g[f], X, Z) <= dilatation(g, Y, Z) * dilatation(f, X, Y) * (1 + 1e-12)  # Prop. 2.8; rounding
+
+
+def test_dilatation_of_constant_and_tearing_maps():
+    assert dilatation([1, 1, 1], LINE, LINE) == 0.0
+    assert dilatation([0, 1], [[0, 0], [0, 0]], [[0, 1], [1, 0]]) == math.inf
+
+
+def test_bad_input():
+    with pytest.raises(InvalidInputError, match=r"f has shape \(2,\)"):
+        dilatation([0, 1], LINE, LINE)
+    with pytest.raises(InvalidInputError, match=r"f\[2\] = 3 is outside 0\.\.2"):
+        dilatation([0, 1, 3], LINE, LINE)
+    with pytest.raises(NotAMetricError, match="is negative"):
+        lipschitz_distance([[0, -1], [-1, 0]], [[0, 1], [1, 0]])
+    with pytest.raises(InvalidInputError, match="time_limit = -2"):
+        lipschitz_distance(LINE, LINE, time_limit=-2)
