@@ -13,7 +13,8 @@ PAUSED, FOUND, EXHAUSTED = 0, 1, 2
 
 DEPTH, DESCENDING, VERSION, NODES, LIMIT, TOTAL, REFUTED, SETTLING = range(8)
 """Places in the progress of a search: decisions made; whether it goes down; number of changes of the level; nodes since
-the last restart, and how many are allowed; nodes in all; pairs refuted at the root; whether a propagation is unfinished."""
+the last restart, and how many are allowed; nodes in all; pairs refuted at the root; whether
+a propagation is unfinished."""
 
 LONGEST_PROPAGATION = 20_000_000
 """Support tests after which a propagation lets the search look at its budget."""
