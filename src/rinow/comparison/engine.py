@@ -30,6 +30,9 @@ SLICE = 20_000_000
 TABLE_BYTES = 3 << 29
 """Memory allowed for the runs of all possible pairs."""
 
+UNLIMITED = 1 << 62
+"""Work of a propagation that is small enough to be finished."""
+
 SERIAL_WORK = 2_000_000
 """Number of pairs times n + m below which a second thread costs more than it saves."""
 
@@ -136,7 +139,9 @@ class State:
         """Arc consistency of everything, or as far as the time reaches; whether it does not refute the level."""
         e, relation, queue = self.engine, self.relation, self.queue
         if self._small:
-            emptied, _ = correspondences.propagate(relation, queue, self.runs, e.X, e.Y, e.both, self.weights)
+            emptied, _ = correspondences.propagate(
+                relation, queue, self.runs, e.X, e.Y, e.both, self.weights, UNLIMITED
+            )
             return emptied < 0
         doomed = np.empty_like(relation.rows)
         while not clock.over:
@@ -170,7 +175,7 @@ class Search:
         self._problem = correspondence_search.Problem(
             engine.X, engine.Y, self.state.runs, engine.both, *(isometries or trivial)
         )
-        self._progress = np.zeros(7, np.int64)
+        self._progress = np.zeros(8, np.int64)
         self._progress[correspondence_search.DESCENDING] = 1
         self._progress[correspondence_search.LIMIT] = FIRST_LIMIT
         self._f, self._g = np.empty(n, np.int64), np.empty(m, np.int64)

@@ -26,7 +26,7 @@ TIGHT, LOOSE = (1.0005, 1.01, 1.005, 1.02), (0.2, 0.4, 0.6, 0.8)
 """Levels of the dives: as multiples of a tight lower bound, as shares of the gap above a loose one."""
 
 LOOSENESS = 2.0
-"""The lower bound is called tight when the upper one is below this multiple of it, or little was tried yet."""
+"""The lower bound is called tight when the upper one is below this multiple of it."""
 
 FIRST_POINTS = (6, 12)
 """Farthest points that get their partners first."""
@@ -42,6 +42,9 @@ BALLS = (0.0, 0.05, 0.1, 0.15, 0.2)
 
 STEPS = (0.97, 0.985, 0.993)
 """Targets of repair as shares of the distortion; the next one after a failure."""
+
+TIGHT_DIVES = 40
+"""Dives at tight levels before loose ones, whose long lists cost much, are tried where the lower bound is weak."""
 
 DIVES_BEFORE_NETS = 8
 """Dives that are tried for nearly isometric spaces before maps are extended from nets."""
@@ -67,7 +70,7 @@ def approach(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
             return
         if k == DIVES_BEFORE_NETS and interval.upper > LOOSENESS * interval.lower:
             _tighten(work, _from_nets(work, interval, clock.part(0.15 * clock.left)), interval, clock)
-        maps = work.dive(level, n_first, clock)
+        maps = work.dive(level, n_first, clock.part(0.2 * clock.left))
         if maps is None:
             continue
         better = _repair(work, maps, level, clock)
@@ -108,7 +111,7 @@ def _bound_by_rows(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> 
 def _levels(interval: Interval) -> Iterator[tuple[float, int]]:
     """Levels for dives in turn, and how many farthest points come first."""
     for k in count():
-        if interval.lower > 0 and (k % 8 < 6 or interval.upper < LOOSENESS * interval.lower):
+        if interval.lower > 0 and (k < TIGHT_DIVES or k % 8 < 6 or interval.upper < LOOSENESS * interval.lower):
             level = TIGHT[k % len(TIGHT)] * interval.lower
         else:
             level = interval.lower + LOOSE[k % len(LOOSE)] * (interval.upper - interval.lower)

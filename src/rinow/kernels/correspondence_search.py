@@ -6,14 +6,18 @@ import numpy as np
 
 from rinow.kernels._jit import kernel
 from rinow.kernels.bitsets import ZERO, bit, contains, lowest_bit, popcount
-from rinow.kernels.correspondences import clear, delete, mark_all, propagate, restrict
+from rinow.kernels.correspondences import UNFINISHED, clear, delete, mark_all, propagate, restrict
 
 PAUSED, FOUND, EXHAUSTED = 0, 1, 2
 """Why a search returns: its budget is spent; it stands at a relation that fits; there is none, or none other."""
 
-DEPTH, DESCENDING, VERSION, NODES, LIMIT, TOTAL, REFUTED = range(7)
+DEPTH, DESCENDING, VERSION, NODES, LIMIT, TOTAL, REFUTED, SETTLING = range(8)
 """Places in the progress of a search: decisions made; whether it goes down; number of changes of the level; nodes since
-the last restart, and how many are allowed; nodes in all; pairs refuted at the root."""
+the last restart, and how many are allowed; nodes in all; pairs refuted at the root; whether
+a propagation is unfinished."""
+
+LONGEST_PROPAGATION = 20_000_000
+"""Support tests after which a propagation lets the search look at its budget."""
 
 
 class Stack(NamedTuple):
@@ -43,6 +47,9 @@ def search(problem, relation, queue, stack, progress, weights, f, g, budget):
     """Go on until the budget of support tests is spent, a fitting relation is found (f and g), or nothing is left."""
     spent = 0
     while spent < budget:
+        if progress[SETTLING] == 1:
+            spent += _settle(problem, relation, queue, progress, weights, True)
+            continue
         if progress[DESCENDING] == 0:
             if progress[DEPTH] == 0:
                 return EXHAUSTED
@@ -106,7 +113,10 @@ def _settle(problem, relation, queue, progress, weights, alive):
     """Propagate, and set the direction in which the search goes on; the work."""
     emptied, work = -1, 0
     if alive:
-        emptied, work = propagate(relation, queue, problem.runs, problem.X, problem.Y, problem.both, weights)
+        emptied, work = propagate(
+            relation, queue, problem.runs, problem.X, problem.Y, problem.both, weights, LONGEST_PROPAGATION
+        )
+    progress[SETTLING] = 1 if emptied == UNFINISHED else 0
     progress[DESCENDING] = 1 if alive and emptied < 0 else 0
     return work
 

@@ -9,6 +9,9 @@ from typing import Any, NamedTuple
 from rinow.kernels._jit import kernel, parallel_kernel, prange
 from rinow.kernels.bitsets import ZERO, bit, contains, discard, lowest_bit, popcount, size
 
+UNFINISHED = -2
+"""Mark of a propagation that stopped between two passes."""
+
 
 class Relation(NamedTuple):
     """Possible pairs, by rows and by columns, with their counts."""
@@ -85,14 +88,15 @@ def missing_support(s, places, n_places, runs, prefixes, at, sets):
 
 
 @kernel
-def propagate(relation, queue, runs, X, Y, both, weights):
+def propagate(relation, queue, runs, X, Y, both, weights, most_work):
     """Arc consistency from the marked rows and columns on; what was emptied, and the work.
 
-    The first value is the emptied row x, n + the emptied column, or -1.  The weights of what caused a failure grow.
-    Without `both` only rows must keep a pair.
+    The first value is the emptied row x, n + the emptied column, or -1; or UNFINISHED when so much work is done and
+    rows or columns are still marked.  The weights of what caused a failure grow.  Without `both` only rows must keep a
+    pair.
     """
     n, work = relation.rows.shape[0], 0
-    while True:
+    while work < most_work:
         n_rows = listed(queue.rows, relation.row_counts, queue.row_list)
         n_columns = listed(queue.columns, relation.column_counts, queue.column_list)
         if not both:
@@ -126,6 +130,7 @@ def propagate(relation, queue, runs, X, Y, both, weights):
                             weights[cause] += 1.0
                             clear(queue)
                             return emptied, work
+    return UNFINISHED, work
 
 
 @kernel
