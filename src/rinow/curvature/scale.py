@@ -21,6 +21,8 @@ PILOT_RADII, PILOT_ORDER = 10, 6
 """Balls and orders of the fits over the tangent plane."""
 SAMPLE_SPACINGS = ((8192, 4.5), (32768, 6.0), (np.inf, 8.0))
 """Radius a sample covers, in spacings, for meshes up to so many vertices."""
+ROUNDING = 1e-15
+"""Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
 """Reach of a sample over the vertices it speaks for, and over the samples it is averaged with, in radii it covers."""
 
@@ -72,7 +74,7 @@ class Samples(NamedTuple):
     noise: Floats
 
 
-def sample(sheet: balls.Sheet, ladder: Ladder) -> Samples:
+def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool) -> Samples:
     """Examine all balls and orders at a sample of the vertices."""
     from scipy.sparse import csr_array
 
@@ -87,6 +89,8 @@ def sample(sheet: balls.Sheet, ladder: Ladder) -> Samples:
     out = np.empty_like(frames)
     reaches = ladder.reaches[choice.radius] * ladder.factors[centres]
     patches.pilot_frames(centres, frames, reaches, choice.order, ladder.most, N_BLOCKS, sheet, out)
+    if is_refined:
+        patches.pilot_frames(centres, out.copy(), reaches, choice.order, ladder.most, N_BLOCKS, sheet, out)
     torus_logs, choice, noise = _examine(sheet, ladder, centres, out, len(ladder.reaches), False, links)
     everything = np.arange(n, dtype=np.int32)
     member_starts, members = members_of_discs(sheet, everything, centres, np.full(m, NEAR * radius))
@@ -111,6 +115,7 @@ def _examine(
     residuals = _averaged(tables.noise, spacing, -2, rows, low, high, links, 1).reshape(m, n_radii * N_ORDERS).astype(np.float64)
     noise = np.fmin.reduce(residuals, axis=1, initial=np.inf)
     noise[noise == np.inf] = 0.0
+    noise = np.maximum(noise, ROUNDING**2)
     s2 = np.repeat(noise, n_radii)[:, None]
     comparison = s2 * tables.bias_variance
     known = patch_fits.Tables(

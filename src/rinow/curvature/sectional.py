@@ -62,7 +62,7 @@ def sectional(
     r"""Curvature from polynomials fitted to the deviations from an osculating torus."""
     sheet, index = patch_sheet(mesh, barriers)
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
-    samples = sample(sheet, ladder)
+    samples = sample(sheet, ladder, QUALITIES[quality].selects)
     out, direction1, direction2 = _blended(sheet, ladder, QUALITIES[quality], samples)
     shrinkage = _shrinkage(samples, out)
     out[:, 0] *= shrinkage
@@ -91,7 +91,10 @@ def _blended(
     tori = np.empty_like(frames)
     reaches = ladder.reaches[pilot.radius] * ladder.factors[centres]
     patches.pilot_frames(centres, frames, reaches, pilot.order, ladder.most, N_BLOCKS, sheet, tori)
-    patches.pilot_frames(centres, tori.copy(), reaches, pilot.order, ladder.most, N_BLOCKS, sheet, tori)
+    if quality.selects:
+        pilot = chosen_at(centres, samples, samples.torus_logs)
+        reaches = ladder.reaches[pilot.radius] * ladder.factors[centres]
+        patches.pilot_frames(centres, tori.copy(), reaches, pilot.order, ladder.most, N_BLOCKS, sheet, tori)
     core, noise = core[centres], noise[centres]
     if quality.selects:
         window = _widened(low[centres], high[centres], top[centres], len(ladder.reaches))

@@ -14,6 +14,8 @@ STEEP_CORE = 0.6
 """Largest squared slope of a fit at a vertex of its core."""
 FALLEN = 1e-6
 """Weight of a fit whose order had to be lowered."""
+SYMMETRIC = 1.5
+"""Largest ratio of variances of stencils that count as symmetric."""
 N_VALUES = 15
 """Weight; weighted K, H, risk, radius; six entries of the second fundamental form; normal; order."""
 
@@ -174,7 +176,7 @@ def write_core(core, risk, power, order, wanted, frame, reach, size, spacing, sh
         out = values[k]
         if not write_values(u, v, polynomial(coefficients, order, reach, u, v), frame, spacing, out):
             continue
-        weight = (1.0 - s) ** 2 * risk ** (-power) * (1.0 if order == wanted else FALLEN)
+        weight = (1.0 - s) ** 2 * risk ** (-power) * (1.0 if order >= wanted else FALLEN)
         sign = 1.0
         if not sheet.is_oriented:
             dot = out[11] * sheet.normals[q, 0] + out[12] * sheet.normals[q, 1] + out[13] * sheet.normals[q, 2]
@@ -188,6 +190,15 @@ def write_core(core, risk, power, order, wanted, frame, reach, size, spacing, sh
         k += 1
     for j in range(k, stop):
         vertices[j] = -1
+
+
+@kernel
+def is_even_handed(lower, upper):
+    """Whether an odd order has nearly the variance of the even one below it, as on stencils with points all around.
+
+    There both agree at the centre, but only the odd one follows the first derivatives of curvature away from it.
+    """
+    return upper[0] + upper[3] + upper[5] < SYMMETRIC * (lower[0] + lower[3] + lower[5])
 
 
 @parallel_kernel
@@ -204,10 +215,14 @@ def patch_values(centres, frames, reaches, orders, cores, sigma2, risks, power, 
                 continue
             v, frame = centres[i], frames[i]
             spacing = sheet.spacing[v]
-            size, order = fit_one(v, frame, reaches[i], orders[i], i + 1, sheet, work, fit)
-            if order < 2:
+            even = orders[i] % 2 == 0 and orders[i] < MAX_ORDER
+            size, top = fit_one(v, frame, reaches[i], orders[i] + even, i + 1, sheet, work, fit)
+            if top < 2:
                 continue
-            nested_fits.coefficients(order, nested_fits.highest_order(size, orders[i]), fit, coefficients)
+            order = min(top, orders[i])
+            if even and top > order and is_even_handed(fit.covariances[order], fit.covariances[top]):
+                order = top
+            nested_fits.coefficients(order, nested_fits.highest_order(size, orders[i] + even), fit, coefficients)
             factor = curvature_and_gradients(fit.jets[order], frame[9] * spacing, frame[10] * spacing)[4]
             c = fit.covariances[order]
             bias = sigma2[i] / spacing**4 * factor * (c[2] - c[3])

@@ -14,7 +14,7 @@ DECAY = 10.0
 """The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
 UNSEEN = 1.0
 """Bias, over the inverse square of the radius, of a quadric where nothing is there to compare it with."""
-ROUNDING = 1e-14
+ROUNDING = 1e-13
 """Error of curvature by rounding, over the inverse square of the spacing."""
 
 
@@ -79,7 +79,7 @@ def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance,
                 value = max(max(tables.variance[t, d], variance[t, d]) + biases[d], ROUNDING * ROUNDING)
                 if len(logs):
                     logs[i, low[i] + k, d] = math.log(value)
-                if value < best:
+                if value <= best:  # below the error of rounding the smallest ball and the highest order
                     best, best_radius, best_order = value, low[i] + k, d + 2
             if best_order == 0:
                 fallback = low[i] + k
