@@ -13,6 +13,7 @@ from rinow._arrays import as_floats
 from rinow._executor import Executor
 from rinow.curvature.angle_defect import angle_defect
 from rinow.curvature.estimate import Estimate
+from rinow.curvature.intrinsic import intrinsic
 from rinow.curvature.lifted import lifted
 from rinow.curvature.notes import mesh_notes, weld_notes
 from rinow.curvature.sectional import sectional
@@ -25,8 +26,8 @@ __all__ = ["SurfaceCurvature", "surface_curvature"]
 
 Floats = NDArray[np.float64]
 
-INTRINSIC = {"angle_defect": angle_defect, "wald": wald}
-METHODS = ("auto", "sectional", "lifted", "wald", "angle_defect")
+INTRINSIC = {"angle_defect": angle_defect, "intrinsic": intrinsic, "wald": wald}
+METHODS = ("auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect")
 QUALITIES = ("best", "fast")
 NO_VALUE = (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE)
 SCALARS = ("gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "radius", "spread")
