@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.centres import cover, flat_frames, members_of_discs
-from rinow.curvature.stencils import N_BLOCKS
-from rinow.kernels import balls, covers, patch_fits, patches, risks
+from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
+from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 
 __all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "sample", "select", "windows"]
@@ -25,6 +25,10 @@ ROUNDING = 1e-15
 """Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
 """Reach of a sample over the vertices it speaks for, and over the samples it is averaged with, in radii it covers."""
+
+
+LADDER = np.array([1.6, 2.0, 2.5, 3.1, 3.8, 4.7, 5.8, 7.2, 9.0, 11.2, 14.0, 17.0])
+"""Radii of balls, in spacings."""
 
 
 class Ladder(NamedTuple):
@@ -44,9 +48,22 @@ class Ladder(NamedTuple):
         """The balls to choose from."""
         return cls(LADDER, np.ones(len(sheet.spacing)), 4096)
 
+    def fitting(
+        self, task: int, sheet: balls.Sheet, centres: Ints, frames: Floats, low: Ints, high: Ints, orders: Ints,
+        rows: NDArray[np.int64], noise: Floats, is_mean: bool = False,
+    ) -> Fitting:  # fmt: skip
+        """Fits about some vertices to the balls of the given indices."""
+        own = patch_driver.Centres(centres, frames, low, high, self.factors[centres], orders, rows, noise)
+        return Fitting(task, is_mean, self.reaches, self.most, sheet, own)
 
-LADDER = np.array([1.6, 2.0, 2.5, 3.1, 3.8, 4.7, 5.8, 7.2, 9.0, 11.2, 14.0, 17.0])
-"""Radii of balls, in spacings."""
+    def frames(self, sheet: balls.Sheet, centres: Ints, frames: Floats, choice: Choice, tasks: Tasks) -> Floats:
+        """Frames of the tori that osculate the fits of a choice of radius and order."""
+        rows, noise = np.zeros(len(centres) + 1, np.int64), np.zeros(len(centres))
+        radius = np.maximum(choice.radius, 0)
+        fitting = self.fitting(
+            patch_driver.FRAMES, sheet, centres, frames, radius, radius, choice.order, rows, noise
+        )
+        return fit_frames(fitting, tasks, 0.1)
 
 
 class Choice(NamedTuple):
@@ -74,7 +91,7 @@ class Samples(NamedTuple):
     noise: Floats
 
 
-def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool) -> Samples:
+def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -> Samples:
     """Examine all balls and orders at a sample of the vertices."""
     from scipy.sparse import csr_array
 
@@ -84,14 +101,11 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool) -> Samples:
     m = len(centres)
     links = members_of_discs(sheet, centres, centres, np.full(m, AROUND * radius))
     n_plane = min(PILOT_RADII, len(ladder.reaches))
-    plane_logs, choice, _ = _examine(sheet, ladder, centres, flat_frames(sheet, centres), n_plane, True, links)
-    frames = flat_frames(sheet, centres)
-    out = np.empty_like(frames)
-    reaches = ladder.reaches[choice.radius] * ladder.factors[centres]
-    patches.pilot_frames(centres, frames, reaches, choice.order, ladder.most, N_BLOCKS, sheet, out)
+    plane_logs, choice, _ = _examine(sheet, ladder, centres, flat_frames(sheet, centres), n_plane, True, links, tasks)
+    frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), choice, tasks)
     if is_refined:
-        patches.pilot_frames(centres, out.copy(), reaches, choice.order, ladder.most, N_BLOCKS, sheet, out)
-    torus_logs, choice, noise = _examine(sheet, ladder, centres, out, len(ladder.reaches), False, links)
+        frames = ladder.frames(sheet, centres, frames, choice, tasks)
+    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, len(ladder.reaches), False, links, tasks)
     everything = np.arange(n, dtype=np.int32)
     member_starts, members = members_of_discs(sheet, everything, centres, np.full(m, NEAR * radius))
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
@@ -99,19 +113,18 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool) -> Samples:
 
 
 def _examine(
-    sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, n_radii: int, is_mean: bool, links: tuple[Ints, Ints]
+    sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, n_radii: int, is_mean: bool,
+    links: tuple[Ints, Ints], tasks: Tasks,
 ) -> tuple[Floats, Choice, Floats]:
     """Logarithmic risks (m, n_radii, 7), choices and noise of samples, whose noise is not known beforehand."""
     m = len(centres)
     low, high = np.zeros(m, np.int32), np.full(m, n_radii - 1, np.int32)
     order = np.full(m, PILOT_ORDER if is_mean else MAX_ORDER, np.int32)
-    rows = np.arange(m + 1) * n_radii
-    tables = _empty_tables(rows[-1], known=False)
-    patch_fits.fill_tables(
-        centres, frames, ladder.reaches, ladder.factors[centres], low, high, order, rows, np.ones(m), is_mean,
-        ladder.most, N_BLOCKS, sheet, tables,
-    )  # fmt: skip
-    spacing = sheet.spacing[centres]
+    rows, spacing = np.arange(m + 1) * n_radii, sheet.spacing[centres]
+    fitting = ladder.fitting(
+        patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, is_mean
+    )
+    tables = fill_tables(fitting, False, tasks, 0.05)
     residuals = _averaged(tables.noise, spacing, -2, rows, low, high, links, 1).reshape(m, n_radii * N_ORDERS).astype(np.float64)
     noise = np.fmin.reduce(residuals, axis=1, initial=np.inf)
     noise[noise == np.inf] = 0.0
@@ -149,18 +162,15 @@ def chosen_at(vertices: Ints, samples: Samples, logs: Floats) -> Choice:
 
 def select(
     sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, window: tuple[Ints, Ints, Ints, Floats],
-    links: tuple[Ints, Ints], passes: int,
+    links: tuple[Ints, Ints], passes: int, tasks: Tasks,
 ) -> Choice:  # fmt: skip
     """The least risk of each centre among the radii low..high and orders up to `top`, for known noise."""
     low, high, top, noise = window
     spacing = sheet.spacing[centres]
     rows = np.zeros(len(centres) + 1, np.int64)
     np.cumsum(high - low + 1, out=rows[1:])
-    tables = _empty_tables(rows[-1], known=True)
-    patch_fits.fill_tables(
-        centres, frames, ladder.reaches, ladder.factors[centres], low, high, top, rows, noise / spacing**2, False,
-        ladder.most, N_BLOCKS, sheet, tables,
-    )  # fmt: skip
+    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise)
+    tables = fill_tables(fitting, True, tasks, 0.4)
     return _least(ladder, spacing, 4, tables, rows, low, high, links, passes, np.empty((0, 0, 0)))
 
 
@@ -186,12 +196,6 @@ def _averaged(
         risks.average_rows(values, spacing, power, rows, low, high, links[1], links[0], out)
         values = out
     return values
-
-
-def _empty_tables(n_rows: int, known: bool) -> patch_fits.Tables:
-    n_biases, n_unknown = patch_fits.N_BIASES, 0 if known else n_rows
-    sizes = ((n_rows, N_ORDERS), (n_rows, n_biases), (n_rows, n_biases), (n_rows, N_ORDERS))
-    return patch_fits.Tables(*(np.empty(s, np.float32) for s in (*sizes, (n_unknown, N_ORDERS), (n_unknown, N_ORDERS))))
 
 
 def _empty_choice(n: int) -> Choice:

@@ -8,13 +8,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow._executor import Executor
+from rinow._executor import Executor, SerialExecutor
 from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
+from rinow.curvature.patch_tasks import Tasks, add_patches
+from rinow.curvature.scale import Ladder, Samples, chosen_at, sample, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, stencil_surface
-from rinow.kernels import balls, patches, quadrics, risks, stencils
+from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencils
 from rinow.mesh import TriangleMesh
 
 __all__ = ["QUALITIES", "sectional"]
@@ -32,8 +33,8 @@ FLAT_DEFECT = 1e-10
 FLAT_RINGS = 3
 CALIBRATION = 1.25
 """The standard error over the root of the least risk: the noise is the least of many estimates, the fit the luckiest."""
-VALUES_PER_TASK = 400_000
-"""Values of patches at vertices that are kept at a time."""
+AROUND = 2.2
+"""Radius of these centres around, in radii a patch covers."""
 
 
 class Quality(NamedTuple):
@@ -63,9 +64,13 @@ def sectional(
 ) -> Estimate:
     r"""Curvature from polynomials fitted to the deviations from an osculating torus."""
     sheet, index = patch_sheet(mesh, barriers)
+    n = mesh.n_vertices
+    tasks = Tasks(executor or SerialExecutor())
+    if progress is not None:
+        tasks.report = lambda share: progress(int(min(share, 0.99) * n), n)
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
-    samples = sample(sheet, ladder, QUALITIES[quality].selects)
-    out, direction1, direction2, noise = _blended(sheet, ladder, QUALITIES[quality], samples)
+    samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks)
+    out, direction1, direction2, noise = _blended(sheet, ladder, QUALITIES[quality], samples, tasks)
     shrinkage = _shrinkage(samples, out)
     out[:, 0] *= shrinkage
     gaussian, mean, risk, reach = (_spread_out(out[:, i], index, mesh.n_vertices) for i in range(4))
@@ -85,30 +90,29 @@ def sectional(
 
 
 def _blended(
-    sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples
+    sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, tasks: Tasks
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """K, H, risk, radius and order at the vertices of the sheet, principal directions, and variance of the noise."""
     low, high, top, noise = windows(samples)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres, sizes = cover(sheet, core)
-    frames = flat_frames(sheet, centres)
-    pilot = chosen_at(centres, samples, samples.plane_logs)
-    tori = np.empty_like(frames)
-    reaches = ladder.reaches[pilot.radius] * ladder.factors[centres]
-    patches.pilot_frames(centres, frames, reaches, pilot.order, ladder.most, N_BLOCKS, sheet, tori)
-    if quality.selects:
-        pilot = chosen_at(centres, samples, samples.torus_logs)
-        reaches = ladder.reaches[pilot.radius] * ladder.factors[centres]
-        patches.pilot_frames(centres, tori.copy(), reaches, pilot.order, ladder.most, N_BLOCKS, sheet, tori)
+    frames = ladder.frames(
+        sheet, centres, flat_frames(sheet, centres), chosen_at(centres, samples, samples.plane_logs), tasks
+    )
+    choice = chosen_at(centres, samples, samples.torus_logs)
     core, at_centres = core[centres], noise[centres]
     if quality.selects:
+        frames = ladder.frames(sheet, centres, frames, choice, tasks)
         window = _widened(low[centres], high[centres], top[centres], len(ladder.reaches))
-        links = members_of_discs(sheet, centres, centres, 2.2 * core)
-        choice = select(sheet, ladder, centres, tori, (*window, at_centres), links, PASSES)
-    else:
-        choice = chosen_at(centres, samples, samples.torus_logs)
+        links = members_of_discs(sheet, centres, centres, AROUND * core)
+        choice = select(sheet, ladder, centres, frames, (*window, at_centres), links, PASSES, tasks)
+    rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
+    np.cumsum(sizes, out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES))
-    _add_patches(sheet, ladder, centres, tori, choice, CORE * core, at_centres, sizes, quality.power, totals)
+    fitting = ladder.fitting(
+        patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
+    )
+    add_patches(fitting, CORE * core, choice.risk, quality.power, totals, tasks, 0.2)
     out, direction1, direction2 = np.empty((len(totals), 5)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
     patches.mean_values(totals, sheet.normals, out, direction1, direction2)
     return out, direction1, direction2, noise
@@ -121,27 +125,6 @@ def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints
         np.clip(high + 1, min(QUARTIC, n_radii - 1), n_radii - 1).astype(np.int32),
         np.minimum((top + 3) // 2 * 2, 8).astype(np.int32),
     )
-
-
-def _add_patches(
-    sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, choice: Choice, cores: Floats, noise: Floats,
-    sizes: Ints, power: float, totals: Floats,
-) -> None:  # fmt: skip
-    """Add the weighted values of all patches to the totals of their vertices, a task at a time."""
-    starts = np.zeros(len(centres) + 1, np.int64)
-    np.cumsum(sizes, out=starts[1:])
-    reaches = ladder.reaches[choice.radius] * ladder.factors[centres]
-    first = 0
-    while first < len(centres):
-        last = max(int(np.searchsorted(starts, starts[first] + VALUES_PER_TASK, "right")) - 1, first + 1)
-        part, own = slice(first, last), starts[first : last + 1] - starts[first]
-        vertices, values = np.empty(own[-1], np.int32), np.empty((own[-1], patches.N_VALUES))
-        patches.patch_values(
-            centres[part], frames[part], reaches[part], choice.order[part], cores[part], noise[part],
-            choice.risk[part], power, own, ladder.most, N_BLOCKS, sheet, vertices, values,
-        )  # fmt: skip
-        patches.add_values(vertices, values, totals)
-        first = last
 
 
 def _shrinkage(samples: Samples, out: Floats) -> Floats:

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rinow.kernels import balls, nested_fits
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels import nested_fits
+from rinow.kernels._jit import kernel
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 from rinow.kernels.osculating_torus import offset_forms
 
@@ -101,27 +101,16 @@ def write_row(t, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients
             tables.bias[t, d - 2] = e * e - (v if known else 0.0)
 
 
-@parallel_kernel
-def fill_tables(centres, frames, reaches, factors, low, high, order, rows, sigma2, is_mean, most, n_blocks, sheet, tables):
-    """Write rows[i].. of the tables for the balls of reaches[low[i]..high[i]] * factors[i] about centres[i]."""
-    n = len(centres)
-    for block in prange(n_blocks):
-        work, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(len(reaches))
-        values, gradients = np.empty(MAX_ORDER + 1), [(0.0, 0.0, 0.0)] * (MAX_ORDER + 1)
-        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            v, first, last = centres[i], low[i], high[i]
-            reach = reaches[first : last + 1] * factors[i]
-            spacing = sheet.spacing[v]
-            k1, k2 = frames[i, 9] * spacing, frames[i, 10] * spacing
-            size = balls.grow(v, frames[i], reach[-1], i + 1, sheet, work)
-            nested_fits.add_moments(work.points, size, reach, nested_fits.highest_order(size, order[i]), fit)
-            before = 0.0
-            for k in range(len(reach)):
-                t, count = rows[i] + k, fit.counts[k]
-                top = nested_fits.highest_order(count, order[i])
-                if count == before or top < 2:
-                    write_no_row(t, tables)
-                    continue
-                before = count
-                top = nested_fits.fit_orders(k, reach[k], top, fit)
-                write_row(t, count, top, is_mean, k1, k2, sigma2[i], fit, tables, values, gradients)
+@kernel
+def write_rows(t, reaches, order, is_mean, k1, k2, s2, fit, tables, values, gradients):
+    """Write one row for each of some nested balls, whose moments are at hand, from row t on."""
+    before = 0.0
+    for k in range(len(reaches)):
+        count = fit.counts[k] if order >= 2 else 0.0
+        top = nested_fits.highest_order(count, order)
+        if count == before or top < 2:
+            write_no_row(t + k, tables)
+            continue
+        before = count
+        top = nested_fits.fit_orders(k, reaches[k], top, fit)
+        write_row(t + k, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients)

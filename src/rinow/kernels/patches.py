@@ -1,10 +1,11 @@
 """One fit about each centre: the frame of its osculating torus, and the curvature it gives the vertices of its core."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from rinow.kernels import balls, monge, nested_fits, stencils
+from rinow.kernels import monge, nested_fits, stencils
 from rinow.kernels._jit import kernel, parallel_kernel, prange
 from rinow.kernels.nested_fits import MAX_ORDER, TERMS, U_POWERS, V_POWERS
 from rinow.kernels.osculating_torus import offset_forms, torus_frame
@@ -18,6 +19,16 @@ SYMMETRIC = 1.5
 """Largest ratio of variances of stencils that count as symmetric."""
 N_VALUES = 15
 """Weight; weighted K, H, risk, radius; six entries of the second fundamental form; normal; order."""
+
+
+class Patch(NamedTuple):
+    """What is known of one patch: radius of its core, noise, risk, power of the risk in its weight, order."""
+
+    core: float
+    noise: float
+    risk: float
+    power: float
+    order: int
 
 
 @kernel
@@ -68,33 +79,6 @@ def write_frame(jet, spacing, frame, out):
     combine(frame, r * tx + s * cx, s * cy, r * tz + s * cz, out, 6)
     flat = jet[1] * jet[1] + jet[2] * jet[2] > STEEP
     out[9], out[10] = (0.0, 0.0) if flat else (first / spacing, second / spacing)
-
-
-@kernel
-def fit_one(v, frame, reach, order, epoch, sheet, work, fit):
-    """Grow one ball and fit one order, or the highest below it; points and order, below 2 without a fit."""
-    size = balls.grow(v, frame, reach, epoch, sheet, work)
-    top = nested_fits.highest_order(size, order)
-    if top < 2:
-        return size, top
-    reaches = np.array([reach])
-    nested_fits.add_moments(work.points, size, reaches, top, fit)
-    return size, nested_fits.fit_orders(0, reach, top, fit)
-
-
-@parallel_kernel
-def pilot_frames(centres, frames, reaches, orders, most, n_blocks, sheet, out):
-    """Write the frame of the osculating torus of one fit about each centre over its given frame, which stays without."""
-    n = len(centres)
-    for block in prange(n_blocks):
-        work, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(1)
-        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            out[i] = frames[i]
-            if orders[i] < 2:
-                continue
-            _, order = fit_one(centres[i], frames[i], reaches[i], orders[i], i + 1, sheet, work, fit)
-            if order >= 2:
-                write_frame(fit.jets[order], sheet.spacing[centres[i]], frames[i], out[i])
 
 
 @kernel
@@ -160,39 +144,6 @@ def write_values(u, v, jet, frame, spacing, out):
 
 
 @kernel
-def write_core(core, risk, power, order, wanted, frame, reach, size, spacing, sheet, work, coefficients, start, stop, bias, vertices, values):
-    """Write the weighted values of one patch at the vertices nearer than `core` spacings to its centre; how many."""
-    k = start
-    members, points = work.members, work.points
-    centre = members[0]
-    for j in range(size):
-        u, v, q = points[0, j], points[1, j], members[j]
-        x = sheet.vertices[q, 0] - sheet.vertices[centre, 0]
-        y = sheet.vertices[q, 1] - sheet.vertices[centre, 1]
-        z = sheet.vertices[q, 2] - sheet.vertices[centre, 2]
-        s = (u * u + v * v) / (core * core)
-        if s >= 1.0 or k == stop or x * x + y * y + z * z >= (core * spacing) ** 2:
-            continue
-        out = values[k]
-        if not write_values(u, v, polynomial(coefficients, order, reach, u, v), frame, spacing, out):
-            continue
-        weight = (1.0 - s) ** 2 * risk ** (-power) * (1.0 if order >= wanted else FALLEN)
-        sign = 1.0
-        if not sheet.is_oriented:
-            dot = out[11] * sheet.normals[q, 0] + out[12] * sheet.normals[q, 1] + out[13] * sheet.normals[q, 2]
-            sign = 1.0 if dot >= 0.0 else -1.0
-        out[1] -= bias
-        out[3], out[4], out[14] = risk, reach * spacing, order
-        out[0] = weight
-        for m in range(1, N_VALUES):
-            out[m] *= weight * (sign if m == 2 or 5 <= m < 14 else 1.0)
-        vertices[k] = q
-        k += 1
-    for j in range(k, stop):
-        vertices[j] = -1
-
-
-@kernel
 def is_even_handed(lower, upper):
     """Whether an odd order has nearly the variance of the even one below it, as on stencils with points all around.
 
@@ -201,35 +152,51 @@ def is_even_handed(lower, upper):
     return upper[0] + upper[3] + upper[5] < SYMMETRIC * (lower[0] + lower[3] + lower[5])
 
 
-@parallel_kernel
-def patch_values(centres, frames, reaches, orders, cores, sigma2, risks, power, starts, most, n_blocks, sheet, vertices, values):
-    """Write from starts[i] on the vertices (-1 for none) and weighted values of the patch about centres[i]."""
-    n = len(centres)
-    for block in prange(n_blocks):
-        work, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(1)
-        coefficients = np.empty(TERMS[MAX_ORDER])
-        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            start, stop = starts[i], starts[i + 1]
-            vertices[start:stop] = -1
-            if orders[i] < 2:
-                continue
-            v, frame = centres[i], frames[i]
-            spacing = sheet.spacing[v]
-            even = orders[i] % 2 == 0 and orders[i] < MAX_ORDER
-            size, top = fit_one(v, frame, reaches[i], orders[i] + even, i + 1, sheet, work, fit)
-            if top < 2:
-                continue
-            order = min(top, orders[i])
-            if even and top > order and is_even_handed(fit.covariances[order], fit.covariances[top]):
-                order = top
-            nested_fits.coefficients(order, nested_fits.highest_order(size, orders[i] + even), fit, coefficients)
-            factor = curvature_and_gradients(fit.jets[order], frame[9] * spacing, frame[10] * spacing)[4]
-            c = fit.covariances[order]
-            bias = sigma2[i] / spacing**4 * factor * (c[2] - c[3])
-            write_core(
-                cores[i], risks[i], power, order, orders[i], frame, reaches[i], size, spacing, sheet, work,
-                coefficients, start, stop, bias, vertices, values,
-            )  # fmt: skip
+@kernel
+def chosen_order(wanted, top, fit):
+    """The order wanted, the odd one above it where that is as good at the centre, or the highest there is."""
+    if wanted % 2 == 0 and top == wanted + 1 and is_even_handed(fit.covariances[wanted], fit.covariances[top]):
+        return top
+    return min(wanted, top)
+
+
+@kernel
+def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values):
+    """Write the weighted values of one patch at the vertices nearer than patch.core spacings to its centre."""
+    k, centre, points = start, ball.members[0], ball.points
+    spacing, core = sheet.spacing[centre], patch.core
+    for j in range(size):
+        u, v, q = points[0, j], points[1, j], ball.members[j]
+        s = (u * u + v * v) / (core * core)
+        if s >= 1.0 or k == stop or stencils.squared_distance(sheet.vertices, centre, q) >= (core * spacing) ** 2:
+            continue
+        out = values[k]
+        if not write_values(u, v, polynomial(coefficients, order, reach, u, v), frame, spacing, out):
+            continue
+        weight = (1.0 - s) ** 2 * patch.risk ** (-patch.power) * (1.0 if order >= patch.order else FALLEN)
+        sign = 1.0
+        if not sheet.is_oriented:
+            dot = out[11] * sheet.normals[q, 0] + out[12] * sheet.normals[q, 1] + out[13] * sheet.normals[q, 2]
+            sign = 1.0 if dot >= 0.0 else -1.0
+        out[1] -= bias
+        out[3], out[4], out[14] = patch.risk, reach * spacing, order
+        out[0] = weight
+        for m in range(1, N_VALUES):
+            out[m] *= weight * (sign if m == 2 or 5 <= m < 14 else 1.0)
+        vertices[k] = q
+        k += 1
+
+
+@kernel
+def write_patch(start, stop, size, top, asked, reach, frame, patch, fit, sheet, ball, coefficients, vertices, values):
+    """Write the values of one patch from its fits of orders up to `top`, of a factorisation made for `asked`."""
+    spacing = sheet.spacing[ball.members[0]]
+    order = chosen_order(patch.order, top, fit)
+    nested_fits.coefficients(order, asked, fit, coefficients)
+    factor = curvature_and_gradients(fit.jets[order], frame[9] * spacing, frame[10] * spacing)[4]
+    c = fit.covariances[order]
+    bias = patch.noise / spacing**4 * factor * (c[2] - c[3])  # the mean of f11 f22 - f12^2 over the noise
+    write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values)
 
 
 @kernel
