@@ -61,9 +61,9 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     weight = np.where(hopeful & np.isfinite(other) & np.isfinite(found.gaussian), 1.0 / other, 0.0)
     own = 1.0 / risk
     share = np.divide(weight, weight + own, out=np.zeros_like(weight), where=weight > 0.0)
-    gaussian = np.where(share > 0.0, estimate.gaussian + share * (found.gaussian - estimate.gaussian), estimate.gaussian)
+    step = np.where(share > 0.0, share * (found.gaussian - estimate.gaussian), 0.0)
     spread = CALIBRATION * np.sqrt(np.where(share > 0.5, other, risk))
-    return estimate.with_gaussian(gaussian, spread)
+    return estimate.with_gaussian(estimate.gaussian + step, spread)
 
 
 def _chord_errors(mesh: TriangleMesh, estimate: Estimate) -> Floats:

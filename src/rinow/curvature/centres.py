@@ -18,7 +18,7 @@ CORE = 1.4
 
 
 def cover(sheet: balls.Sheet, radii: Floats) -> tuple[Ints, Ints]:
-    """Vertices such that every vertex is within the radius of one of them, and the sizes of their discs of `CORE` radii.
+    """Vertices within whose radii all vertices lie, and the sizes of their discs of `CORE` radii.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def cover(sheet: balls.Sheet, radii: Floats) -> tuple[Ints, Ints]:
 
 
 def members_of_discs(sheet: balls.Sheet, targets: Ints, sources: Ints, radii: Floats) -> tuple[Ints, Ints]:
-    """Compressed rows: for each source the numbers of the targets in its disc, grown over edges, of a radius in spacings."""
+    """Compressed rows: the numbers of the targets in the disc of each source, grown over edges; radii in spacings."""
     places = np.full(len(sheet.vertices), -1, np.int32)
     places[targets] = np.arange(len(targets), dtype=np.int32)
     lengths = radii * sheet.spacing[sources]

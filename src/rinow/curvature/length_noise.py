@@ -47,7 +47,7 @@ class LengthNoise:
         n = flow.mesh.n_vertices
         squares, density = np.empty(n), np.empty(n)
         smoothing.defect_sensitivities(flow.metric, flow.mesh.face_areas, squares, density)
-        columns = np.column_stack([np.where(flow.has_data, density, np.nan), np.where(flow.has_data, flow.step_variances, np.nan)])
+        columns = np.column_stack([np.where(flow.has_data, x, np.nan) for x in (density, flow.step_variances)])
         density, step = flow.means(columns, 4).T
         with np.errstate(all="ignore"):
             start = (GAUSSIAN * density * flow.areas**2 / squares) ** (1.0 / 3.0)

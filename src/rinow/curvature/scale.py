@@ -19,8 +19,8 @@ Ints = NDArray[np.int32]
 
 PILOT_RADII, PILOT_ORDER = 10, 6
 """Balls and orders of the fits over the tangent plane."""
-SAMPLE_SPACINGS = ((8192, 4.5), (32768, 6.0), (np.inf, 8.0))
-"""Radius a sample covers, in spacings, for meshes up to so many vertices."""
+SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
+"""Radius a sample covers, in spacings, for meshes up to so many vertices: with and without refinement."""
 ROUNDING = 1e-15
 """Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
@@ -60,9 +60,7 @@ class Ladder(NamedTuple):
         """Frames of the tori that osculate the fits of a choice of radius and order."""
         rows, noise = np.zeros(len(centres) + 1, np.int64), np.zeros(len(centres))
         radius = np.maximum(choice.radius, 0)
-        fitting = self.fitting(
-            patch_driver.FRAMES, sheet, centres, frames, radius, radius, choice.order, rows, noise
-        )
+        fitting = self.fitting(patch_driver.FRAMES, sheet, centres, frames, radius, radius, choice.order, rows, noise)
         return fit_frames(fitting, tasks, 0.1)
 
 
@@ -96,7 +94,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -
     from scipy.sparse import csr_array
 
     n = len(sheet.vertices)
-    radius = next(r for size, r in SAMPLE_SPACINGS if n <= size)
+    radius = next(fine if is_refined else coarse for size, fine, coarse in SAMPLE_SPACINGS if n <= size)
     centres, _ = cover(sheet, np.full(n, radius))
     m = len(centres)
     links = members_of_discs(sheet, centres, centres, np.full(m, AROUND * radius))
@@ -109,24 +107,29 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -
     everything = np.arange(n, dtype=np.int32)
     member_starts, members = members_of_discs(sheet, everything, centres, np.full(m, NEAR * radius))
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
-    return Samples(t.indptr, t.indices, member_starts, members, plane_logs, torus_logs, choice, noise)
+    starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
+    return Samples(starts, near, member_starts, members, plane_logs, torus_logs, choice, noise)
 
 
 def _examine(
-    sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, n_radii: int, is_mean: bool,
-    links: tuple[Ints, Ints], tasks: Tasks,
+    sheet: balls.Sheet,
+    ladder: Ladder,
+    centres: Ints,
+    frames: Floats,
+    n_radii: int,
+    is_mean: bool,
+    links: tuple[Ints, Ints],
+    tasks: Tasks,
 ) -> tuple[Floats, Choice, Floats]:
     """Logarithmic risks (m, n_radii, 7), choices and noise of samples, whose noise is not known beforehand."""
     m = len(centres)
     low, high = np.zeros(m, np.int32), np.full(m, n_radii - 1, np.int32)
     order = np.full(m, PILOT_ORDER if is_mean else MAX_ORDER, np.int32)
     rows, spacing = np.arange(m + 1) * n_radii, sheet.spacing[centres]
-    fitting = ladder.fitting(
-        patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, is_mean
-    )
+    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, is_mean)
     tables = fill_tables(fitting, False, tasks, 0.05)
-    residuals = _averaged(tables.noise, spacing, -2, rows, low, high, links, 1).reshape(m, n_radii * N_ORDERS).astype(np.float64)
-    noise = np.fmin.reduce(residuals, axis=1, initial=np.inf)
+    residuals = _averaged(tables.noise, spacing, -2, rows, low, high, links, 1).reshape(m, n_radii * N_ORDERS)
+    noise = np.fmin.reduce(residuals.astype(np.float64), axis=1, initial=np.inf)
     noise[noise == np.inf] = 0.0
     noise = np.maximum(noise, ROUNDING**2)
     s2 = np.repeat(noise, n_radii)[:, None]
@@ -143,7 +146,7 @@ def _examine(
 
 
 def windows(samples: Samples) -> tuple[Ints, Ints, Ints, Floats]:
-    """For each vertex the least and largest index of radius and the highest order chosen near it, and the noise there."""
+    """For each vertex the least and largest index of radius and the highest order chosen near it, and the noise."""
     n = len(samples.starts) - 1
     low, high, top, noise = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n)
     choice = samples.choice

@@ -32,7 +32,7 @@ FLAT_DEFECT = 1e-10
 """Angle defects below this, in radians, are rounding: a neighbourhood of such vertices is isometric to the plane."""
 FLAT_RINGS = 3
 CALIBRATION = 1.25
-"""The standard error over the root of the least risk: the noise is the least of many estimates, the fit the luckiest."""
+"""Standard error over the root of the least risk: the noise is the least of many estimates, the fit the luckiest."""
 AROUND = 2.2
 """Radius of these centres around, in radii a patch covers."""
 
@@ -62,7 +62,49 @@ def sectional(
     progress: Progress | None = None,
     executor: Executor | None = None,
 ) -> Estimate:
-    r"""Curvature from polynomials fitted to the deviations from an osculating torus."""
+    r"""Curvature of a surface from its deviations from the torus that osculates it, in patches.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    quality : {"best", "fast"}, optional
+        How densely patches lie, and whether each chooses its own order and radius or takes those of a sample near it.
+    radius : float, optional
+        Radius of all balls, in the unit of length; by default the data decide.
+    barriers : (n_vertices,) ndarray of bool, optional
+        Vertices that balls reach but do not grow beyond, such as those on crease edges: curvature beside a crease
+        then comes from its own side.
+    progress : callable, optional
+        Called with the number of vertices done and their total.
+    executor : Executor, optional
+        Where the tasks of up to 65,536 patches run.
+
+    Returns
+    -------
+    estimate : Estimate
+        Everything, at a boundary one-sided.  Without a fit in reach the two rings are fitted by a quadric; with a
+        given `radius` the value is nan there.
+
+    Notes
+    -----
+    Haantjes and Menger see a curve by the deviation of chords from arcs.  Here the arcs are those of a torus with
+    the normal curvatures k1, k2 of a first fit: (u, v) are arc lengths on it and w is the distance from it.  The
+    polynomial :math:`w = f(u, v)` of least squares over a ball gives
+
+    .. math:: K = \frac{L N - M^2}{\det g}, \quad H = \frac{g_{22} L - 2 g_{12} M + g_{11} N}{2 \det g}
+
+    at all points of a patch around the centre.  All orders 2 to 8 come from one Cholesky factorisation of each ball,
+    whose leading blocks are the lower orders.  Of each order d and radius the expected squared error is the variance,
+    from the residuals, plus the squared bias, the mean over the patches around of
+    :math:`(K_d - K_{d+2})^2` less the variance of this difference.  The least sum is taken, patches are blended, and K
+    is shrunk towards 0 as far as its mean square does not exceed its mean error (James and Stein).  Where all angles
+    within three rings sum to 2π the surface is isometric to the plane and K is 0.
+
+    See Also
+    --------
+    auto : Together with `intrinsic`.
+    """
     sheet, index = patch_sheet(mesh, barriers)
     n = mesh.n_vertices
     tasks = Tasks(executor or SerialExecutor())
@@ -79,9 +121,7 @@ def sectional(
     gaussian[is_flat & np.isfinite(gaussian)] = 0.0
     noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
     spread, half = CALIBRATION * np.sqrt(risk), np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
-    estimate = Estimate(
-        gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing
-    )
+    estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
     if radius is None:
         _fill_in(mesh, estimate)
     if progress is not None:
@@ -119,7 +159,7 @@ def _blended(
 
 
 def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints, Ints]:
-    """The windows with a radius more at each end, wide enough for a quartic, and the highest order with two more, even."""
+    """The windows with a radius more at each end and large enough for a quartic, and an even order two higher."""
     return (
         np.maximum(low - 1, 0).astype(np.int32),
         np.clip(high + 1, min(QUARTIC, n_radii - 1), n_radii - 1).astype(np.int32),
@@ -158,13 +198,13 @@ def _spread_out(values: Floats, index: NDArray[np.intp], n: int) -> Floats:
 
 def _fill_in(mesh: TriangleMesh, estimate: Estimate) -> None:
     """Take two rings and a quadric, or Euler's formula alone, where no patch has a fit."""
-    assert estimate.mean is not None
     rows = np.flatnonzero(~np.isfinite(estimate.gaussian) & mesh.topology.vertex_is_used)
     if not len(rows):
         return
     frames = empty_frames(len(rows))
     quadrics.ring_quadrics(rows, stencil_surface(mesh), N_BLOCKS, frames)
-    values = (frames.k1 * frames.k2, 0.5 * (frames.k1 + frames.k2), frames.k1, frames.k2)
-    for name, value in zip(("gaussian", "mean", "k1", "k2"), values, strict=True):
-        getattr(estimate, name)[rows] = value
-    estimate.direction1[rows], estimate.direction2[rows] = frames.direction1, frames.direction2
+    estimate.gaussian[rows] = frames.k1 * frames.k2
+    for name in ("k1", "k2", "direction1", "direction2"):
+        getattr(estimate, name)[rows] = getattr(frames, name)
+    if estimate.mean is not None:
+        estimate.mean[rows] = 0.5 * (frames.k1 + frames.k2)

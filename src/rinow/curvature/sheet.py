@@ -12,9 +12,7 @@ from rinow.mesh import TriangleMesh
 __all__ = ["patch_sheet"]
 
 
-def patch_sheet(
-    mesh: TriangleMesh, barriers: NDArray[np.bool_] | None = None
-) -> tuple[balls.Sheet, NDArray[np.intp]]:
+def patch_sheet(mesh: TriangleMesh, barriers: NDArray[np.bool_] | None = None) -> tuple[balls.Sheet, NDArray[np.intp]]:
     """The sheet, and the index in the mesh of each of its vertices.
 
     Parameters

@@ -114,15 +114,18 @@ def surface_curvature(
     mesh : TriangleMesh, IntrinsicMesh, (V, F) pair, or object with vertices and faces
         The surface.  Vertices may be unused or not finite, faces degenerate, misoriented or not manifold: `status`
         tells where no value is defined.  A soup of separate triangles is welded for the computation.
-    method : {"auto", "sectional", "lifted", "wald", "angle_defect"}, optional
-        "sectional" fits the circles through each vertex and the others in a ball; "lifted" takes the angles of the
-        star after its edges were lifted to arcs; "wald" is the embedding curvature of the star; "angle_defect" is
-        the angle defect over a third of the area.  The last two need edge lengths only and give `gaussian` only.
-        "auto" is the most accurate of them that the mesh and `quality` allow.
+    method : {"auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect"}, optional
+        "sectional" fits polynomials of order 2 to 8 to the deviations from an osculating torus; "lifted" takes the
+        angles of the star after its edges were lifted to arcs; "intrinsic" averages angle defects; "wald" is the
+        embedding curvature of the star; "angle_defect" is the angle defect over a third of the area.  The last three
+        need edge lengths only and give `gaussian` only.  "auto" blends "sectional" and "intrinsic" at each vertex by
+        their expected errors; of a mesh without positions it is "intrinsic".  Order and scale are chosen at each
+        place from the data in all of these three.
     quality : {"best", "fast"}, optional
-        What "auto" prefers: "sectional" or "lifted" for a mesh with positions.
+        "fast" lets a sample of the vertices decide about order and scale around it, with fewer patches, and is
+        several times faster; for "sectional" and "auto".
     radius : float, optional
-        Radius of the balls of "sectional", positive, in the unit of length; by default four local spacings.
+        Radius of all balls of "sectional" and "auto", positive, in the unit of length; by default the data decide.
     progress : callable, optional
         Called with the number of vertices done and their total.
     executor : Executor, optional
@@ -217,7 +220,7 @@ def _estimate(
     executor: Executor | None,
 ) -> Estimate:
     if method in WITH_RADIUS:
-        options = {"quality": quality, "radius": radius, "progress": progress, "executor": executor}
+        options: dict[str, Any] = {"quality": quality, "radius": radius, "progress": progress, "executor": executor}
         return WITH_RADIUS[method](as_triangle_mesh(mesh), **options)
     estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
     if progress is not None:

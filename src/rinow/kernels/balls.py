@@ -86,7 +86,9 @@ def gather(members, first, last, spacing, reach, epoch, sheet, work):
 def judge(count, frame, spacing, is_oriented, work):
     """Replace the candidates' positions by torus coordinates; the squared distance, or inf for another sheet."""
     raw = work.raw
-    nx, ny, nz, ax, ay, az, bx, by, bz = frame[0], frame[1], frame[2], frame[3], frame[4], frame[5], frame[6], frame[7], frame[8]
+    nx, ny, nz = frame[0], frame[1], frame[2]
+    ax, ay, az = frame[3], frame[4], frame[5]
+    bx, by, bz = frame[6], frame[7], frame[8]
     k1, k2 = frame[9] * spacing, frame[10] * spacing
     for i in range(count):
         x, y, z = raw[0, i], raw[1, i], raw[2, i]

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from rinow.kernels import stencils
 from rinow.kernels._jit import kernel, parallel_kernel, prange
 
 QUANTA = 2.0**26
@@ -25,9 +26,7 @@ def shape_keys(vertices, offsets, neighbours, out):
     for v in prange(len(offsets) - 1):
         total = squares = 0.0
         for i in range(offsets[v], offsets[v + 1]):
-            w = neighbours[i]
-            x, y, z = vertices[w, 0] - vertices[v, 0], vertices[w, 1] - vertices[v, 1], vertices[w, 2] - vertices[v, 2]
-            d2 = x * x + y * y + z * z
+            d2 = stencils.squared_distance(vertices, v, neighbours[i])
             squares += d2
             total += math.sqrt(d2)
         ratio = squares / (total * total) if total > 0.0 else 0.0
@@ -35,12 +34,12 @@ def shape_keys(vertices, offsets, neighbours, out):
 
 
 @kernel
-def disc(v, radius, epoch, vertices, offsets, neighbours, is_barrier, marks, members):
+def disc(v, radius, epoch, sheet, marks, members):
     """Write the vertices within a distance of v, reached over such vertices; how many."""
+    vertices, offsets, neighbours, is_barrier = sheet.vertices, sheet.offsets, sheet.neighbours, sheet.is_barrier
     members[0] = v
     marks[v] = epoch
     done, n = 0, 1
-    x, y, z = vertices[v, 0], vertices[v, 1], vertices[v, 2]
     while done < n:
         p = members[done]
         if done == 0 or not is_barrier[p]:
@@ -48,8 +47,7 @@ def disc(v, radius, epoch, vertices, offsets, neighbours, is_barrier, marks, mem
                 q = neighbours[i]
                 if marks[q] != epoch:
                     marks[q] = epoch
-                    a, b, c = vertices[q, 0] - x, vertices[q, 1] - y, vertices[q, 2] - z
-                    if a * a + b * b + c * c < radius * radius and n < len(members):
+                    if stencils.squared_distance(vertices, v, q) < radius * radius:
                         members[n] = q
                         n += 1
         done += 1
@@ -65,15 +63,11 @@ def cover(candidates, radii, core, sheet, centres, sizes):
     for v in candidates:
         if is_covered[v]:
             continue
-        size = disc(v, core * radii[v], count + 1, sheet.vertices, sheet.offsets, sheet.neighbours, sheet.is_barrier, marks, members)
+        size = disc(v, core * radii[v], count + 1, sheet, marks, members)
         far = radii[v] * radii[v]
         for i in range(size):
-            q = members[i]
-            x = sheet.vertices[q, 0] - sheet.vertices[v, 0]
-            y = sheet.vertices[q, 1] - sheet.vertices[v, 1]
-            z = sheet.vertices[q, 2] - sheet.vertices[v, 2]
-            if x * x + y * y + z * z < far:
-                is_covered[q] = True
+            if stencils.squared_distance(sheet.vertices, v, members[i]) < far:
+                is_covered[members[i]] = True
         centres[count], sizes[count] = v, size
         count += 1
     return count
@@ -89,9 +83,7 @@ def link(places, sources, radii, counts, starts, is_counting, n_blocks, sheet, l
     for block in prange(n_blocks):
         marks, members = np.zeros(size, np.int32), np.empty(size, np.int32)
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            m = disc(
-                sources[i], radii[i], i + 1, sheet.vertices, sheet.offsets, sheet.neighbours, sheet.is_barrier, marks, members
-            )
+            m = disc(sources[i], radii[i], i + 1, sheet, marks, members)
             k = 0
             for j in range(m):
                 target = places[members[j]]

@@ -115,9 +115,10 @@ def fill(shell, reach, order, work):
     moments, offsets, factor = work.moments[shell], work.offsets[shell], work.factor
     for i in range(p):
         ui, vi = U_POWERS[i], V_POWERS[i]
-        for j in range(i, p):
-            a, b = ui + U_POWERS[j], vi + V_POWERS[j]
-            factor[i, j] = moments[b, a] * scales[a + b]
+        for d in range(ui + vi, order + 1):
+            scale, first = scales[ui + vi + d], TERMS[d] - d - 1
+            for b in range(vi if d == ui + vi else 0, d + 1):
+                factor[i, first + b] = moments[vi + b, ui + d - b] * scale
         for k in range(6):
             factor[i, p + k] = 1.0 if i == k else 0.0
         factor[i, p + 6] = offsets[vi, ui] * scales[ui + vi]
@@ -151,7 +152,8 @@ def fit_orders(shell, reach, order, work):
         y, z3, z4, z5 = row[p + 6], row[p + 3], row[p + 4], row[p + 5]
         c0, c1, c2, c3 = c0 + row[p] * y, c1 + row[p + 1] * y, c2 + row[p + 2] * y, c3 + z3 * y
         c4, c5, left = c4 + z4 * y, c5 + z5 * y, left - y * y
-        v33, v34, v35, v44, v45, v55 = v33 + z3 * z3, v34 + z3 * z4, v35 + z3 * z5, v44 + z4 * z4, v45 + z4 * z5, v55 + z5 * z5
+        v33, v34, v35 = v33 + z3 * z3, v34 + z3 * z4, v35 + z3 * z5
+        v44, v45, v55 = v44 + z4 * z4, v45 + z4 * z5, v55 + z5 * z5
         row[k] = inverse
         if k + 1 == TERMS[degree]:
             jet, cov = work.jets[degree], work.covariances[degree]

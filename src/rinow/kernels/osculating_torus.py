@@ -1,9 +1,10 @@
 """Coordinates of space around an osculating torus, and curvature of a surface given as an offset from it.
 
-The torus touches the surface at the origin of a frame (d1, d2, n) and has the normal curvatures k1 along d1 and k2 along
-d2, positive where it bends towards n.  (u1, u2) are the lengths of its two circular arcs and w is the distance from it;
-plane, cylinder and sphere are the cases without k1 and k2, without k1, and of equal k1 and k2.  The height of a circle
-over its tangent is singular at one radius, so that its Taylor series is of no use near it; here the same circle is w = 0.
+The torus touches the surface at the origin of a frame (d1, d2, n) and has the normal curvatures k1 along d1 and k2
+along d2, positive where it bends towards n.  (u1, u2) are the lengths of its two circular arcs and w is the distance
+from it; plane, cylinder and sphere are the cases without k1 and k2, without k1, and of equal k1 and k2.  The height of
+a circle over its tangent is singular at one radius, so that its Taylor series is of no use near it; here the same
+circle is w = 0.
 """
 
 import math

@@ -15,9 +15,10 @@ TABLES, FRAMES, VALUES = 0, 1, 2
 
 
 class Centres(NamedTuple):
-    """Vertices (n,) about which balls grow, and for each the frame (11,) of its torus, the first and last index of its
+    """Vertices (n,) about which balls grow, and what is to be fitted there.
 
-    radii, the factor of these radii, the highest order, the first row of its results (n + 1,), and the noise.
+    For each the frame (11,) of its torus, the first and last index of its radii, the factor of these radii, the highest
+    order, the first row of its results (n + 1,), and the variance of the noise.
     """
 
     vertices: np.ndarray

@@ -7,7 +7,7 @@ import numpy as np
 
 from rinow.kernels import nested_fits
 from rinow.kernels._jit import kernel
-from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
+from rinow.kernels.nested_fits import N_ORDERS
 from rinow.kernels.osculating_torus import offset_forms
 
 N_BIASES = N_ORDERS - 2
@@ -95,8 +95,9 @@ def write_row(t, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients
             tables.noise[t, i] = fit.residuals[d] / spare if enough else np.nan
     for d in range(2, top - 1):
         if not math.isnan(values[d]) and not math.isnan(values[d + 2]):
-            above, below = quadratic_form(gradients[d], fit.covariances[d + 2]), quadratic_form(gradients[d], fit.covariances[d])
-            v, e = s2 * max(above - below, 0.0), values[d] - values[d + 2]
+            above, below = fit.covariances[d + 2], fit.covariances[d]
+            v = s2 * max(quadratic_form(gradients[d], above) - quadratic_form(gradients[d], below), 0.0)
+            e = values[d] - values[d + 2]
             tables.bias_variance[t, d - 2] = v
             tables.bias[t, d - 2] = e * e - (v if known else 0.0)
 

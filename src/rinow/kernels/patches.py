@@ -64,7 +64,7 @@ def combine(frame, x, y, z, out, first):
 
 @kernel
 def write_frame(jet, spacing, frame, out):
-    """Write normal, principal directions and curvatures of a fit over the frame's torus; at a steep one only the normal."""
+    """Write normal, principal directions and curvatures of a fit over a torus; of a steep one only the normal."""
     k1, k2 = frame[9] * spacing, frame[10] * spacing
     g11, g12, g22, l, m, n, volume = forms_at_centre(jet, k1, k2)
     e1, e2 = 1.0 - k1 * jet[0], 1.0 - k2 * jet[0]
@@ -108,7 +108,7 @@ def polynomial(coefficients, order, reach, u, v):
 
 @kernel
 def write_values(u, v, jet, frame, spacing, out):
-    """Write curvatures, second fundamental form and normal at a point of a patch; whether the patch is not steep there."""
+    """Write curvatures, second fundamental form and normal at a point of a patch; false where it is steep."""
     f, f1, f2, f11, f12, f22 = jet
     if not f1 * f1 + f2 * f2 <= STEEP_CORE:
         return False

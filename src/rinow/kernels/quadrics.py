@@ -91,7 +91,7 @@ def fit_quadric(points, n, coefficients):
 
 @parallel_kernel
 def ring_quadrics(rows, surface, n_blocks, frames):
-    """Write the principal frames of the quadrics fitted to two rings of rows[i]; nan, and the given normal, without one."""
+    """Write the principal frames of quadrics fitted to two rings of rows[i]; nan, and the given normal, without one."""
     n_vertices, n = surface.vertices.shape[0], len(rows)
     for block in prange(n_blocks):
         members, marks = np.empty(n_vertices + 1, np.int32), np.zeros(n_vertices, np.int32)

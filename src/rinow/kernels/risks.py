@@ -15,7 +15,7 @@ DECAY = 10.0
 UNSEEN = 0.3
 """Bias, over the inverse square of the radius, of a quadric where nothing is there to compare it with."""
 ROUNDING, MIDDLE = 1e-13, 5.0
-"""Error of curvature by rounding, over the inverse square of the spacing, and the radius to take if all are that good."""
+"""Error of K by rounding, over the inverse square of the spacing, and the radius to take if all are that good."""
 
 
 @parallel_kernel
@@ -61,7 +61,7 @@ def squared_biases(t, ratio, upper, tables, bias, bias_variance, out):
 
 @parallel_kernel
 def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance, radius, order, risk, logs):
-    """Write the radius index (-1 for none), order and value of the least risk of each centre; logs (n, R, 7) unless empty."""
+    """Write radius index (-1: none), order and value of the least risk of each centre; logs (n, R, 7) unless empty."""
     for i in prange(len(low)):
         biases = np.empty(N_ORDERS)
         biases[:] = np.nan
