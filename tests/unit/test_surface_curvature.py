@@ -327,9 +327,9 @@ def test_notes_name_the_faults():
 
 def test_auto_takes_the_best_method_the_data_allow():
     mesh = TriangleMesh(SPHERE.vertices, SPHERE.faces)
-    assert surface_curvature(mesh).method == "sectional"
-    assert surface_curvature(mesh, quality="fast").method == "sectional"
-    assert surface_curvature(mesh.intrinsic()).method == "wald"
+    assert surface_curvature(mesh).method == "auto"
+    assert surface_curvature(mesh, quality="fast").method == "auto"
+    assert surface_curvature(mesh.intrinsic()).method == "intrinsic"
 
 
 def test_meshes_of_other_libraries():
@@ -377,5 +377,5 @@ def test_result_is_frozen_pickles_and_shows_itself():
     copy = pickle.loads(pickle.dumps(c))
     np.testing.assert_array_equal(copy.gaussian, c.gaussian)
     html = c._repr_html_()
-    assert "<caption>Curvature by sectional: 64 OK, 36 BOUNDARY</caption>" in html
+    assert "<caption>Curvature by auto: 64 OK, 36 BOUNDARY</caption>" in html
     assert f"{np.median(c.gaussian):.4g}" in html

@@ -33,6 +33,8 @@ FLAT_DEFECT = 1e-10
 FLAT_RINGS = 3
 CALIBRATION = 1.25
 """Standard error over the root of the least risk: the noise is the least of many estimates, the fit the luckiest."""
+EDGE_RINGS, EDGE_RADII = 2, 3
+"""Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, and worse placed."""
 AROUND = 2.2
 """Radius of these centres around, in radii a patch covers."""
 
@@ -111,8 +113,9 @@ def sectional(
     if progress is not None:
         tasks.report = lambda share: progress(int(min(share, 0.99) * n), n)
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
+    at_edge = _rings_around(mesh, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
     samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks)
-    out, direction1, direction2, noise = _blended(sheet, ladder, QUALITIES[quality], samples, tasks)
+    out, direction1, direction2, noise = _blended(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
     shrinkage = _shrinkage(samples, out)
     out[:, 0] *= shrinkage
     gaussian, mean, risk, reach = (_spread_out(out[:, i], index, mesh.n_vertices) for i in range(4))
@@ -130,7 +133,7 @@ def sectional(
 
 
 def _blended(
-    sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, tasks: Tasks
+    sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, at_edge: NDArray[np.bool_], tasks: Tasks
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """K, H, risk, radius and order at the vertices of the sheet, principal directions, and variance of the noise."""
     low, high, top, noise = windows(samples)
@@ -143,8 +146,10 @@ def _blended(
     core, at_centres = core[centres], noise[centres]
     if quality.selects:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
+        beside = at_edge[centres]
+        high = high + np.where(at_edge, EDGE_RADII, 0)
         window = _widened(low[centres], high[centres], top[centres], len(ladder.reaches))
-        links = members_of_discs(sheet, centres, centres, AROUND * core)
+        links = _like(members_of_discs(sheet, centres, centres, AROUND * core), beside)
         choice = select(sheet, ladder, centres, frames, (*window, at_centres), links, PASSES, tasks)
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes, out=rows[1:])
@@ -156,6 +161,16 @@ def _blended(
     out, direction1, direction2 = np.empty((len(totals), 5)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
     patches.mean_values(totals, sheet.normals, out, direction1, direction2)
     return out, direction1, direction2, noise
+
+
+def _like(links: tuple[Ints, Ints], kind: NDArray[np.bool_]) -> tuple[Ints, Ints]:
+    """Compressed rows without the members of the other kind than the owner of the row."""
+    starts, members = links
+    owners = np.repeat(np.arange(len(kind)), np.diff(starts))
+    keep = kind[owners] == kind[members]
+    new = np.zeros(len(starts), np.int32)
+    np.cumsum(np.bincount(owners[keep], minlength=len(kind)), out=new[1:])
+    return new, members[keep]
 
 
 def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints, Ints]:
@@ -181,12 +196,18 @@ def _flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
     curved = (np.abs(mesh.vertex_angle_defects) > FLAT_DEFECT) & ~t.vertex_is_boundary
     if curved.mean() > 0.99:
         return ~curved & False
-    count = curved.astype(np.float64)
-    for _ in range(FLAT_RINGS):
-        sums = np.empty_like(count)
-        stencils.ring_sums(np.minimum(count, 1.0), t.neighbour_offsets, t.neighbours, sums)
-        count = sums
-    return count == 0.0
+    return ~_rings_around(mesh, curved, FLAT_RINGS)
+
+
+def _rings_around(mesh: TriangleMesh, marked: NDArray[np.bool_], n_rings: int) -> NDArray[np.bool_]:
+    """(n_vertices,): a marked vertex is at most so many edges away."""
+    t, count = mesh.topology, marked.astype(np.float64)
+    if marked.any():
+        for _ in range(n_rings):
+            sums = np.empty_like(count)
+            stencils.ring_sums(np.minimum(count, 1.0), t.neighbour_offsets, t.neighbours, sums)
+            count = sums
+    return count > 0.0
 
 
 def _spread_out(values: Floats, index: NDArray[np.intp], n: int) -> Floats:
