@@ -12,7 +12,7 @@ from rinow._executor import Executor, SerialExecutor
 from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.patch_tasks import Tasks, add_patches
-from rinow.curvature.scale import Ladder, Samples, chosen_at, sample, select, windows
+from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, stencil_surface
 from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencils
@@ -33,7 +33,7 @@ FLAT_DEFECT = 1e-10
 FLAT_RINGS = 3
 CALIBRATION = 1.25
 """Standard error over the root of the least risk: the noise is the least of many estimates, the fit the luckiest."""
-EDGE_RINGS, EDGE_RADII = 2, 3
+EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 3, 4
 """Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, and worse placed."""
 AROUND = 2.2
 """Radius of these centres around, in radii a patch covers."""
@@ -139,14 +139,12 @@ def _blended(
     low, high, top, noise = windows(samples)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres, sizes = cover(sheet, core)
-    frames = ladder.frames(
-        sheet, centres, flat_frames(sheet, centres), chosen_at(centres, samples, samples.plane_logs), tasks
-    )
-    choice = chosen_at(centres, samples, samples.torus_logs)
+    plane, choice = (chosen_at(centres, samples, logs) for logs in (samples.plane_logs, samples.torus_logs))
+    beside = at_edge[centres]
+    frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
     core, at_centres = core[centres], noise[centres]
     if quality.selects:
-        frames = ladder.frames(sheet, centres, frames, choice, tasks)
-        beside = at_edge[centres]
+        frames = ladder.frames(sheet, centres, frames, _safe(choice, beside, ladder), tasks)
         high = high + np.where(at_edge, EDGE_RADII, 0)
         window = _widened(low[centres], high[centres], top[centres], len(ladder.reaches))
         links = _like(members_of_discs(sheet, centres, centres, AROUND * core), beside)
@@ -161,6 +159,13 @@ def _blended(
     out, direction1, direction2 = np.empty((len(totals), 5)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
     patches.mean_values(totals, sheet.normals, out, direction1, direction2)
     return out, direction1, direction2, noise
+
+
+def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
+    """The choice, with larger balls and lower orders beside a boundary, where samples of the interior were too bold."""
+    radius = np.where(beside, np.minimum(choice.radius + EDGE_RADII, len(ladder.reaches) - 1), choice.radius)
+    order = np.where(beside, np.minimum(choice.order, EDGE_ORDER), choice.order)
+    return choice._replace(radius=radius.astype(np.int32), order=order.astype(np.int32))
 
 
 def _like(links: tuple[Ints, Ints], kind: NDArray[np.bool_]) -> tuple[Ints, Ints]:
