@@ -56,7 +56,8 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     hopeful = (chords < risk) & (estimate.noise < QUIET * estimate.spacing) & ~mesh.topology.vertex_is_boundary
     if np.count_nonzero(hopeful) < WORTH * mesh.n_vertices:
         return estimate
-    found = intrinsic_curvature(mesh)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = intrinsic_curvature(mesh)
     other = found.variance + found.squared_bias + chords
     weight = np.where(hopeful & np.isfinite(other) & np.isfinite(found.gaussian), 1.0 / other, 0.0)
     own = 1.0 / risk

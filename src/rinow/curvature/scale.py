@@ -21,6 +21,8 @@ PILOT_RADII, PILOT_ORDER = 10, 6
 """Balls and orders of the fits over the tangent plane."""
 SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
 """Radius a sample covers, in spacings, for meshes up to so many vertices: with and without refinement."""
+RESOLVED = 0.1
+"""Curvature, over the inverse spacing, up to which a mesh resolves its surface: large balls miss nothing there."""
 ROUNDING = 1e-15
 """Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
@@ -137,7 +139,7 @@ def _examine(
     known = patch_fits.Tables(
         (s2 * tables.variance + s2 * s2 * tables.second).astype(np.float32),
         (tables.bias - comparison).astype(np.float32), comparison.astype(np.float32),
-        tables.leverage, tables.second[:0], tables.noise[:0],
+        tables.leverage, tables.jump, tables.second[:0], tables.noise[:0],
     )  # fmt: skip
     logs = np.full((m, n_radii, N_ORDERS), np.nan)
     power = 2 if is_mean else 4
@@ -183,10 +185,12 @@ def _least(
 ) -> Choice:  # fmt: skip
     """The choice of least risk, which is in units of length; its logarithms in those of the spacings."""
     place = (spacing, power, rows, low, high, links)
-    bias, bias_variance = (_averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance))
+    bias, bias_variance, jump = (
+        _averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance, tables.jump)
+    )
     variance = _averaged(tables.variance, *place, 1)
     choice = _empty_choice(len(spacing))
-    risks.least_risks(rows, low, high, ladder.reaches, tables, variance, bias, bias_variance, *choice, logs)
+    risks.least_risks(rows, low, high, ladder.reaches, tables, variance, bias, bias_variance, jump, RESOLVED**power, *choice, logs)
     return choice._replace(risk=choice.risk / spacing**power)
 
 

@@ -32,7 +32,7 @@ FLAT_DEFECT = 1e-10
 """Angle defects below this, in radians, are rounding: a neighbourhood of such vertices is isometric to the plane."""
 FLAT_RINGS = 3
 CALIBRATION = 1.25
-"""Standard error over the root of the least risk: the noise is the least of many estimates, the fit the luckiest."""
+"""Standard error over the root of the least risk: the noise is the least of many estimates, the fit the best."""
 EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 3, 4
 """Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, and worse placed."""
 AROUND = 2.2

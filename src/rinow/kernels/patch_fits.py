@@ -21,6 +21,7 @@ class Tables(NamedTuple):
 
     variance (T, 7): of the curvature, nan without a fit; bias (T, 5): squared differences to the order two above;
     bias_variance (T, 5): their variances; leverage (T, 7): points times variance of the mean curvature for unit noise;
+    jump (T, 7): squared differences to the quadric of the least ball that also has order 4, nan before it;
     second (T, 7) and noise (T, 7), or no rows: variance of second order and residual variance, for unknown noise.
     """
 
@@ -28,6 +29,7 @@ class Tables(NamedTuple):
     bias: np.ndarray
     bias_variance: np.ndarray
     leverage: np.ndarray
+    jump: np.ndarray
     second: np.ndarray
     noise: np.ndarray
 
@@ -64,6 +66,7 @@ def write_no_row(t, tables):
     tables.bias[t, :] = np.nan
     tables.bias_variance[t, :] = np.nan
     tables.leverage[t, :] = 0.0
+    tables.jump[t, :] = np.nan
     if tables.second.shape[0]:
         tables.second[t, :] = np.nan
         tables.noise[t, :] = np.nan
@@ -105,7 +108,7 @@ def write_row(t, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients
 @kernel
 def write_rows(t, reaches, order, is_mean, k1, k2, s2, fit, tables, values, gradients):
     """Write one row for each of some nested balls, whose moments are at hand, from row t on."""
-    before = 0.0
+    before, reference = 0.0, np.nan
     for k in range(len(reaches)):
         count = fit.counts[k] if order >= 2 else 0.0
         top = nested_fits.highest_order(count, order)
@@ -115,3 +118,7 @@ def write_rows(t, reaches, order, is_mean, k1, k2, s2, fit, tables, values, grad
         before = count
         top = nested_fits.fit_orders(k, reaches[k], top, fit)
         write_row(t + k, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients)
+        if math.isnan(reference) and not math.isnan(tables.bias[t + k, 0]):
+            reference = values[2]
+        for d in range(2, top + 1):
+            tables.jump[t + k, d - 2] = (values[d] - reference) ** 2

@@ -12,6 +12,8 @@ KAPPA = 0.2
 """The squared bias is at least this share of the variance of the comparison that shows it."""
 DECAY = 10.0
 """The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
+EXPLAINED = 3.0
+"""A difference between a large and a small ball is a bias of the large one beyond so many squared errors of the small."""
 UNSEEN = 0.3
 """Bias, over the inverse square of the radius, of a quadric where nothing is there to compare it with."""
 ROUNDING, MIDDLE = 1e-13, 5.0
@@ -59,13 +61,27 @@ def squared_biases(t, ratio, upper, tables, bias, bias_variance, out):
         out[i] = out[i - 2] * min(1.0, DECAY * out[i - 2] / lower) if lower > 0.0 else out[i - 2]
 
 
+@kernel
+def tolerance(first, last, tables, variance, bias, bias_variance):
+    """Squared difference from the quadric of the least ball that its own error explains; inf without one.
+
+    Orders over one large ball may agree with each other and all miss what a small ball shows.
+    """
+    for t in range(first, last + 1):
+        if not math.isnan(tables.bias[t, 0]):
+            error = max(tables.variance[t, 0], variance[t, 0]) + max(bias[t, 0], KAPPA * bias_variance[t, 0])
+            return EXPLAINED * error
+    return np.inf
+
+
 @parallel_kernel
-def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance, radius, order, risk, logs):
+def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance, jump, resolved, radius, order, risk, logs):
     """Write radius index (-1: none), order and value of the least risk of each centre; logs (n, R, 7) unless empty."""
     for i in prange(len(low)):
         biases = np.empty(N_ORDERS)
         biases[:] = np.nan
         best, best_radius, best_order, upper, last, fallback = np.inf, -1, 0, -1, 0, -1
+        allowed = resolved + tolerance(rows[i], rows[i] + high[i] - low[i], tables, variance, bias, bias_variance)
         for k in range(high[i] - low[i], -1, -1):
             t = rows[i] + k
             if math.isnan(tables.variance[t, 0]):
@@ -77,7 +93,9 @@ def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance,
             for d in range(N_ORDERS):
                 if math.isnan(tables.variance[t, d]) or math.isnan(biases[d]):
                     continue
-                value = max(max(tables.variance[t, d], variance[t, d]) + biases[d], floor)
+                excess = jump[t, d] - allowed
+                squared_bias = max(biases[d], excess) if excess > 0.0 else biases[d]
+                value = max(max(tables.variance[t, d], variance[t, d]) + squared_bias, floor)
                 if len(logs):
                     logs[i, low[i] + k, d] = math.log(value)
                 if value <= best:  # the highest order below the error of rounding
