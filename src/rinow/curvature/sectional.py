@@ -1,90 +1,236 @@
-"""Curvature from the normal curvatures of circles through a vertex and its neighbours."""
+"""Curvature from patches fitted over osculating tori, with the order and the scale that the data call for."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
+from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.stencils import N_BLOCKS, empty_frames, local_spacing, stencil_surface
-from rinow.kernels import jets, monge, stencils
+from rinow.curvature.patch_tasks import Tasks, add_patches
+from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
+from rinow.curvature.sheet import patch_sheet
+from rinow.curvature.stencils import N_BLOCKS, empty_frames, stencil_surface
+from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencils
 from rinow.mesh import TriangleMesh
 
-__all__ = ["sectional"]
-
-SPACINGS = 4.0
-"""Default radius in local spacings.  Smaller balls halve the error on exact vertices; larger ones bear more noise."""
-VERTICES_PER_TASK = 1 << 16
+__all__ = ["QUALITIES", "sectional"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
 Progress = Callable[[int, int], object]
+
+QUARTIC = 3
+"""Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
+PASSES = 2
+"""Averages of squared differences over the centres around."""
+FLAT_DEFECT = 1e-10
+"""Angle defects below this, in radians, are rounding: a neighbourhood of such vertices is isometric to the plane."""
+FLAT_RINGS = 3
+CALIBRATION = 1.25
+"""Standard error over the root of the least risk: the noise is the least of many estimates, the fit the best."""
+EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 3, 4
+"""Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, and worse placed."""
+AROUND = 2.2
+"""Radius of these centres around, in radii a patch covers."""
+
+
+class Quality(NamedTuple):
+    """How densely patches lie.
+
+    A patch covers `share` times the least radius near it, at least `least` spacings.  With `selects` each chooses its
+    order and radius, else the samples near it do.  Patches are weighted by their risk to the power `-power`.
+    """
+
+    share: float
+    least: float
+    selects: bool
+    power: float
+
+
+QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5), "fast": Quality(0.3, 1.2, False, 1.0)}
 
 
 def sectional(
     mesh: TriangleMesh,
     *,
+    quality: str = "best",
     radius: float | None = None,
+    barriers: NDArray[np.bool_] | None = None,
     progress: Progress | None = None,
     executor: Executor | None = None,
 ) -> Estimate:
-    r"""Principal curvatures from the circles that touch the surface at a vertex and run through its neighbours.
+    r"""Curvature of a surface from its deviations from the torus that osculates it, in patches.
 
     Parameters
     ----------
     mesh : TriangleMesh
         The surface.
+    quality : {"best", "fast"}, optional
+        How densely patches lie, and whether each chooses its own order and radius or takes those of a sample near it.
     radius : float, optional
-        Radius of the balls, in the unit of length; by default four times the local spacing of the vertices.
+        Radius of all balls, in the unit of length; by default the data decide.
+    barriers : (n_vertices,) ndarray of bool, optional
+        Vertices that balls reach but do not grow beyond, such as those on crease edges: curvature beside a crease
+        then comes from its own side.
     progress : callable, optional
         Called with the number of vertices done and their total.
     executor : Executor, optional
-        Where the tasks of 65,536 vertices run.
+        Where the tasks of up to 65,536 patches run.
 
     Returns
     -------
     estimate : Estimate
-        Everything; at a boundary one-sided.  nan where fewer than three neighbours, or neighbours on a line,
-        determine nothing.  `spread` is the standard error of the regression: the scatter of the circles about
-        the jet, carried over to K.  It covers noise, not what the jet leaves out; nan without a spare neighbour.
+        Everything, at a boundary one-sided.  Without a fit in reach the two rings are fitted by a quadric; with a
+        given `radius` the value is nan there.
 
     Notes
     -----
-    A neighbour q of p at distance d and height z over the tangent plane gives the normal curvature 2z/d²: Menger's
-    curvature of p, p, q.  Euler's formula is the leading term of these numbers; the others are the slopes of the
-    plane and the third and fourth derivatives of the surface, and all are found together by least squares,
+    Haantjes and Menger see a curve by the deviation of chords from arcs.  Here the arcs are those of a torus with
+    the normal curvatures k1, k2 of a first fit: (u, v) are arc lengths on it and w is the distance from it.  The
+    polynomial :math:`w = f(u, v)` of least squares over a ball gives
 
-    .. math:: \min \sum_q \Bigl(\frac{2 z_q}{d_q^2}
-        - \frac{2}{d_q^2} \sum_{1 \le a+b \le 4} c_{ab} x_q^a y_q^b\Bigr)^2 .
+    .. math:: K = \frac{L N - M^2}{\det g}, \quad H = \frac{g_{22} L - 2 g_{12} M + g_{11} N}{2 \det g}
 
-    The neighbours are those in a ball, reached along edges and not beyond a fold.  The order 4 falls to 3 and 2 with
-    fewer than 1.25 neighbours for each unknown or where they lie on too few lines, then to Euler's formula alone.
-    The cost is about 10 μs for each vertex.
+    at all points of a patch around the centre.  All orders 2 to 8 come from one Cholesky factorisation of each ball,
+    whose leading blocks are the lower orders.  Of each order d and radius the expected squared error is the variance,
+    from the residuals, plus the squared bias, the mean over the patches around of
+    :math:`(K_d - K_{d+2})^2` less the variance of this difference.  The least sum is taken, patches are blended, and K
+    is shrunk towards 0 as far as its mean square does not exceed its mean error (James and Stein).  Where all angles
+    within three rings sum to 2π the surface is isometric to the plane and K is 0.
 
     See Also
     --------
-    lifted : Faster, from two rings of neighbours.
+    auto : Together with `intrinsic`.
     """
-    surface = stencil_surface(mesh)
+    sheet, index = patch_sheet(mesh, barriers)
     n = mesh.n_vertices
-    radii = SPACINGS * local_spacing(mesh) if radius is None else np.full(n, float(radius))
-    starts = range(0, n, VERTICES_PER_TASK)
-    parts: list[tuple[monge.PrincipalFrames, Floats]] = []
-    for part in (executor or SerialExecutor()).map(partial(_jets, surface, radii), starts):
-        parts.append(part)
-        if progress is not None:
-            progress(min(len(parts) * VERTICES_PER_TASK, n), n)
-    k1, k2, direction1, direction2 = (np.concatenate([frames[i] for frames, _ in parts]) for i in range(4))
-    spread = np.concatenate([spread for _, spread in parts])
-    return Estimate(k1 * k2, spread, radii, 0.5 * (k1 + k2), k1, k2, direction1, direction2)
+    tasks = Tasks(executor or SerialExecutor())
+    if progress is not None:
+        tasks.report = lambda share: progress(int(min(share, 0.99) * n), n)
+    ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
+    at_edge = _rings_around(mesh, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
+    samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks)
+    out, direction1, direction2, noise = _blended(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
+    shrinkage = _shrinkage(samples, out)
+    out[:, 0] *= shrinkage
+    gaussian, mean, risk, reach = (_spread_out(out[:, i], index, mesh.n_vertices) for i in range(4))
+    direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
+    is_flat = _flat_vertices(mesh)
+    gaussian[is_flat & np.isfinite(gaussian)] = 0.0
+    noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
+    spread, half = CALIBRATION * np.sqrt(risk), np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
+    estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
+    if radius is None:
+        _fill_in(mesh, estimate)
+    if progress is not None:
+        progress(mesh.n_vertices, mesh.n_vertices)
+    return estimate
 
 
-def _jets(surface: stencils.Surface, radii: Floats, start: int) -> tuple[monge.PrincipalFrames, Floats]:
-    """Principal frames and standard errors of one task."""
-    stop = min(start + VERTICES_PER_TASK, len(radii))
-    frames, spread = empty_frames(stop - start), np.empty(stop - start)
-    jets.ball_jets(start, stop, radii, jets.MAX_ORDER, surface, N_BLOCKS, frames, spread)
-    return frames, spread
+def _blended(
+    sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, at_edge: NDArray[np.bool_], tasks: Tasks
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """K, H, risk, radius and order at the vertices of the sheet, principal directions, and variance of the noise."""
+    low, high, top, noise = windows(samples)
+    core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
+    centres, sizes = cover(sheet, core)
+    plane, choice = (chosen_at(centres, samples, logs) for logs in (samples.plane_logs, samples.torus_logs))
+    beside = at_edge[centres]
+    frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
+    core, at_centres = core[centres], noise[centres]
+    if quality.selects:
+        frames = ladder.frames(sheet, centres, frames, _safe(choice, beside, ladder), tasks)
+        high = high + np.where(at_edge, EDGE_RADII, 0)
+        window = _widened(low[centres], high[centres], top[centres], len(ladder.reaches))
+        links = _like(members_of_discs(sheet, centres, centres, AROUND * core), beside)
+        choice = select(sheet, ladder, centres, frames, (*window, at_centres), links, PASSES, tasks)
+    rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
+    np.cumsum(sizes, out=rows[1:])
+    totals = np.zeros((len(sheet.vertices), patches.N_VALUES))
+    fitting = ladder.fitting(
+        patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
+    )
+    add_patches(fitting, CORE * core, choice.risk, quality.power, totals, tasks, 0.2)
+    out, direction1, direction2 = np.empty((len(totals), 5)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
+    patches.mean_values(totals, sheet.normals, out, direction1, direction2)
+    return out, direction1, direction2, noise
+
+
+def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
+    """The choice, with larger balls and lower orders beside a boundary, where samples of the interior were too bold."""
+    radius = np.where(beside, np.minimum(choice.radius + EDGE_RADII, len(ladder.reaches) - 1), choice.radius)
+    order = np.where(beside, np.minimum(choice.order, EDGE_ORDER), choice.order)
+    return choice._replace(radius=radius.astype(np.int32), order=order.astype(np.int32))
+
+
+def _like(links: tuple[Ints, Ints], kind: NDArray[np.bool_]) -> tuple[Ints, Ints]:
+    """Compressed rows without the members of the other kind than the owner of the row."""
+    starts, members = links
+    owners = np.repeat(np.arange(len(kind)), np.diff(starts))
+    keep = kind[owners] == kind[members]
+    new = np.zeros(len(starts), np.int32)
+    np.cumsum(np.bincount(owners[keep], minlength=len(kind)), out=new[1:])
+    return new, members[keep]
+
+
+def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints, Ints]:
+    """The windows with a radius more at each end and large enough for a quartic, and an even order two higher."""
+    return (
+        np.maximum(low - 1, 0).astype(np.int32),
+        np.clip(high + 1, min(QUARTIC, n_radii - 1), n_radii - 1).astype(np.int32),
+        np.minimum((top + 3) // 2 * 2, 8).astype(np.int32),
+    )
+
+
+def _shrinkage(samples: Samples, out: Floats) -> Floats:
+    """Positive-part shrinkage of K towards 0, from its mean square and mean risk around the samples."""
+    factors, shrinkage = np.empty(len(samples.noise)), np.empty(len(out))
+    risks.disc_shrinkage(samples.member_starts, samples.members, out[:, 0], out[:, 2], factors)
+    risks.vertex_means(samples.starts, samples.near, factors, shrinkage)
+    return shrinkage
+
+
+def _flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
+    """(n_vertices,): every interior vertex within three rings has the angle 2π."""
+    t = mesh.topology
+    curved = (np.abs(mesh.vertex_angle_defects) > FLAT_DEFECT) & ~t.vertex_is_boundary
+    if curved.mean() > 0.99:
+        return ~curved & False
+    return ~_rings_around(mesh, curved, FLAT_RINGS)
+
+
+def _rings_around(mesh: TriangleMesh, marked: NDArray[np.bool_], n_rings: int) -> NDArray[np.bool_]:
+    """(n_vertices,): a marked vertex is at most so many edges away."""
+    t, count = mesh.topology, marked.astype(np.float64)
+    if marked.any():
+        for _ in range(n_rings):
+            sums = np.empty_like(count)
+            stencils.ring_sums(np.minimum(count, 1.0), t.neighbour_offsets, t.neighbours, sums)
+            count = sums
+    return count > 0.0
+
+
+def _spread_out(values: Floats, index: NDArray[np.intp], n: int) -> Floats:
+    """Values of the sheet in the order of the mesh, nan elsewhere."""
+    out = np.full((n, *values.shape[1:]), np.nan)
+    out[index] = values
+    return out
+
+
+def _fill_in(mesh: TriangleMesh, estimate: Estimate) -> None:
+    """Take two rings and a quadric, or Euler's formula alone, where no patch has a fit."""
+    rows = np.flatnonzero(~np.isfinite(estimate.gaussian) & mesh.topology.vertex_is_used)
+    if not len(rows):
+        return
+    frames = empty_frames(len(rows))
+    quadrics.ring_quadrics(rows, stencil_surface(mesh), N_BLOCKS, frames)
+    estimate.gaussian[rows] = frames.k1 * frames.k2
+    for name in ("k1", "k2", "direction1", "direction2"):
+        getattr(estimate, name)[rows] = getattr(frames, name)
+    if estimate.mean is not None:
+        estimate.mean[rows] = 0.5 * (frames.k1 + frames.k2)

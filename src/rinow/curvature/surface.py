@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from rinow._arrays import as_floats
 from rinow._executor import Executor
 from rinow.curvature.angle_defect import angle_defect
+from rinow.curvature.auto import auto
 from rinow.curvature.estimate import Estimate
+from rinow.curvature.intrinsic import intrinsic
 from rinow.curvature.lifted import lifted
 from rinow.curvature.notes import mesh_notes, weld_notes
 from rinow.curvature.sectional import sectional
@@ -25,8 +27,9 @@ __all__ = ["SurfaceCurvature", "surface_curvature"]
 
 Floats = NDArray[np.float64]
 
-INTRINSIC = {"angle_defect": angle_defect, "wald": wald}
-METHODS = ("auto", "sectional", "lifted", "wald", "angle_defect")
+INTRINSIC = {"angle_defect": angle_defect, "intrinsic": intrinsic, "wald": wald}
+WITH_RADIUS = {"auto": auto, "sectional": sectional}
+METHODS = ("auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect")
 QUALITIES = ("best", "fast")
 NO_VALUE = (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE)
 SCALARS = ("gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "radius", "spread")
@@ -111,15 +114,18 @@ def surface_curvature(
     mesh : TriangleMesh, IntrinsicMesh, (V, F) pair, or object with vertices and faces
         The surface.  Vertices may be unused or not finite, faces degenerate, misoriented or not manifold: `status`
         tells where no value is defined.  A soup of separate triangles is welded for the computation.
-    method : {"auto", "sectional", "lifted", "wald", "angle_defect"}, optional
-        "sectional" fits the circles through each vertex and the others in a ball; "lifted" takes the angles of the
-        star after its edges were lifted to arcs; "wald" is the embedding curvature of the star; "angle_defect" is
-        the angle defect over a third of the area.  The last two need edge lengths only and give `gaussian` only.
-        "auto" is the most accurate of them that the mesh and `quality` allow.
+    method : {"auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect"}, optional
+        "sectional" fits polynomials of order 2 to 8 to the deviations from an osculating torus; "lifted" takes the
+        angles of the star after its edges were lifted to arcs; "intrinsic" averages angle defects; "wald" is the
+        embedding curvature of the star; "angle_defect" is the angle defect over a third of the area.  The last three
+        need edge lengths only and give `gaussian` only.  "auto" blends "sectional" and "intrinsic" at each vertex by
+        their expected errors; of a mesh without positions it is "intrinsic".  Order and scale are chosen at each
+        place from the data in all of these three.
     quality : {"best", "fast"}, optional
-        What "auto" prefers: "sectional" or "lifted" for a mesh with positions.
+        "fast" lets a sample of the vertices decide about order and scale around it, with fewer patches, and is
+        several times faster; for "sectional" and "auto".
     radius : float, optional
-        Radius of the balls of "sectional", positive, in the unit of length; by default four local spacings.
+        Radius of all balls of "sectional" and "auto", positive, in the unit of length; by default the data decide.
     progress : callable, optional
         Called with the number of vertices done and their total.
     executor : Executor, optional
@@ -169,7 +175,7 @@ def surface_curvature(
         n = surface.n_vertices
         surface, index = surface.welded()
         notes = weld_notes(n, surface.n_vertices)
-    estimate = _estimate(surface, chosen, radius, progress, executor)
+    estimate = _estimate(surface, chosen, quality, radius, progress, executor)
     result = _assembled(estimate, vertex_status(surface), chosen)
     notes += mesh_notes(surface, oriented=chosen not in INTRINSIC)
     return replace(_relabelled(_rescaled(result, unit), index), notes=notes)
@@ -191,18 +197,14 @@ def _chosen_method(method: str, quality: str, mesh: TriangleMesh | IntrinsicMesh
     for name, value, allowed in (("method", method, METHODS), ("quality", quality, QUALITIES)):
         if value not in allowed:
             raise InvalidInputError(f"{name} = {value!r} is unknown; choose from {', '.join(allowed)}.")
-    if method != "auto":
-        return method
-    if isinstance(mesh, IntrinsicMesh):
-        return "wald"
-    return "sectional" if quality == "best" else "lifted"
+    return "intrinsic" if method == "auto" and isinstance(mesh, IntrinsicMesh) else method
 
 
 def _checked_radius(radius: float, method: str) -> float:
     value = as_floats(radius, "radius")
     if value.ndim or not 0.0 < value < np.inf:
         raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
-    if method != "sectional":
+    if method not in WITH_RADIUS:
         raise InvalidInputError(
             f"radius = {radius!r} is not for method {method!r}, which takes the star of each vertex; leave it out."
         )
@@ -212,12 +214,14 @@ def _checked_radius(radius: float, method: str) -> float:
 def _estimate(
     mesh: TriangleMesh | IntrinsicMesh,
     method: str,
+    quality: str,
     radius: float | None,
     progress: Callable[[int, int], object] | None,
     executor: Executor | None,
 ) -> Estimate:
-    if method == "sectional":
-        return sectional(as_triangle_mesh(mesh), radius=radius, progress=progress, executor=executor)
+    if method in WITH_RADIUS:
+        options: dict[str, Any] = {"quality": quality, "radius": radius, "progress": progress, "executor": executor}
+        return WITH_RADIUS[method](as_triangle_mesh(mesh), **options)
     estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)

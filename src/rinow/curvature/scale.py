@@ -1,0 +1,209 @@
+"""Order and radius of local fits, from the data: at a sample of the vertices first, then at every centre of a patch."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.curvature.centres import cover, flat_frames, members_of_discs
+from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
+from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
+from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
+
+__all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "sample", "select", "windows"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+PILOT_RADII, PILOT_ORDER = 10, 6
+"""Balls and orders of the fits over the tangent plane."""
+SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
+"""Radius a sample covers, in spacings, for meshes up to so many vertices: with and without refinement."""
+RESOLVED = 0.1
+"""Curvature, over the inverse spacing, up to which a mesh resolves its surface: large balls miss nothing there."""
+ROUNDING = 1e-15
+"""Least noise, in spacings."""
+NEAR, AROUND = 1.5, 2.2
+"""Reach of a sample over the vertices it speaks for, and over the samples it is averaged with, in radii it covers."""
+
+
+LADDER = np.array([1.6, 2.0, 2.5, 3.1, 3.8, 4.7, 5.8, 7.2, 9.0, 11.2, 14.0, 17.0])
+"""Radii of balls, in spacings."""
+
+
+class Ladder(NamedTuple):
+    """Radii of balls: reaches (R,) in units of `factors` (n,) spacings, and the most points of a ball."""
+
+    reaches: Floats
+    factors: Floats
+    most: int
+
+    @classmethod
+    def of_radius(cls, radius: float, sheet: balls.Sheet) -> Ladder:
+        """One ball of a given radius, in the unit of length."""
+        return cls(np.ones(1), radius / sheet.spacing, len(sheet.spacing))
+
+    @classmethod
+    def free(cls, sheet: balls.Sheet) -> Ladder:
+        """The balls to choose from."""
+        return cls(LADDER, np.ones(len(sheet.spacing)), 4096)
+
+    def fitting(
+        self, task: int, sheet: balls.Sheet, centres: Ints, frames: Floats, low: Ints, high: Ints, orders: Ints,
+        rows: NDArray[np.int64], noise: Floats, is_mean: bool = False,
+    ) -> Fitting:  # fmt: skip
+        """Fits about some vertices to the balls of the given indices."""
+        own = patch_driver.Centres(centres, frames, low, high, self.factors[centres], orders, rows, noise)
+        return Fitting(task, is_mean, self.reaches, self.most, sheet, own)
+
+    def frames(self, sheet: balls.Sheet, centres: Ints, frames: Floats, choice: Choice, tasks: Tasks) -> Floats:
+        """Frames of the tori that osculate the fits of a choice of radius and order."""
+        rows, noise = np.zeros(len(centres) + 1, np.int64), np.zeros(len(centres))
+        radius = np.maximum(choice.radius, 0)
+        fitting = self.fitting(patch_driver.FRAMES, sheet, centres, frames, radius, radius, choice.order, rows, noise)
+        return fit_frames(fitting, tasks, 0.1)
+
+
+class Choice(NamedTuple):
+    """For each centre the index of the radius (-1 for none), the order and the expected squared error."""
+
+    radius: Ints
+    order: Ints
+    risk: Floats
+
+
+class Samples(NamedTuple):
+    """What the sample tells.
+
+    For each vertex the samples near it (compressed rows); for each sample the vertices it speaks for (compressed rows),
+    its logarithmic risks of H over the plane and of K over the torus for each radius and order, its choice and noise.
+    """
+
+    starts: Ints
+    near: Ints
+    member_starts: Ints
+    members: Ints
+    plane_logs: Floats
+    torus_logs: Floats
+    choice: Choice
+    noise: Floats
+
+
+def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -> Samples:
+    """Examine all balls and orders at a sample of the vertices."""
+    from scipy.sparse import csr_array
+
+    n = len(sheet.vertices)
+    radius = next(fine if is_refined else coarse for size, fine, coarse in SAMPLE_SPACINGS if n <= size)
+    centres, _ = cover(sheet, np.full(n, radius))
+    m = len(centres)
+    links = members_of_discs(sheet, centres, centres, np.full(m, AROUND * radius))
+    n_plane = min(PILOT_RADII, len(ladder.reaches))
+    plane_logs, choice, _ = _examine(sheet, ladder, centres, flat_frames(sheet, centres), n_plane, True, links, tasks)
+    frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), choice, tasks)
+    if is_refined:
+        frames = ladder.frames(sheet, centres, frames, choice, tasks)
+    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, len(ladder.reaches), False, links, tasks)
+    everything = np.arange(n, dtype=np.int32)
+    member_starts, members = members_of_discs(sheet, everything, centres, np.full(m, NEAR * radius))
+    t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
+    starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
+    return Samples(starts, near, member_starts, members, plane_logs, torus_logs, choice, noise)
+
+
+def _examine(
+    sheet: balls.Sheet,
+    ladder: Ladder,
+    centres: Ints,
+    frames: Floats,
+    n_radii: int,
+    is_mean: bool,
+    links: tuple[Ints, Ints],
+    tasks: Tasks,
+) -> tuple[Floats, Choice, Floats]:
+    """Logarithmic risks (m, n_radii, 7), choices and noise of samples, whose noise is not known beforehand."""
+    m = len(centres)
+    low, high = np.zeros(m, np.int32), np.full(m, n_radii - 1, np.int32)
+    order = np.full(m, PILOT_ORDER if is_mean else MAX_ORDER, np.int32)
+    rows, spacing = np.arange(m + 1) * n_radii, sheet.spacing[centres]
+    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, is_mean)
+    tables = fill_tables(fitting, False, tasks, 0.05)
+    residuals = _averaged(tables.noise, spacing, -2, rows, low, high, links, 1).reshape(m, n_radii * N_ORDERS)
+    noise = np.fmin.reduce(residuals.astype(np.float64), axis=1, initial=np.inf)
+    noise[noise == np.inf] = 0.0
+    noise = np.maximum(noise, ROUNDING**2)
+    s2 = np.repeat(noise, n_radii)[:, None]
+    comparison = s2 * tables.bias_variance
+    known = patch_fits.Tables(
+        (s2 * tables.variance + s2 * s2 * tables.second).astype(np.float32),
+        (tables.bias - comparison).astype(np.float32), comparison.astype(np.float32),
+        tables.leverage, tables.jump, tables.second[:0], tables.noise[:0],
+    )  # fmt: skip
+    logs = np.full((m, n_radii, N_ORDERS), np.nan)
+    power = 2 if is_mean else 4
+    choice = _least(ladder, spacing, power, known, rows, low, high, links, 1, logs)
+    return logs - power * np.log(spacing)[:, None, None], choice, noise * spacing**2
+
+
+def windows(samples: Samples) -> tuple[Ints, Ints, Ints, Floats]:
+    """For each vertex the least and largest index of radius and the highest order chosen near it, and the noise."""
+    n = len(samples.starts) - 1
+    low, high, top, noise = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n)
+    choice = samples.choice
+    covers.windows(samples.starts, samples.near, choice.radius, choice.order, samples.noise, low, high, top, noise)
+    unknown = high < 0
+    low[unknown], high[unknown], top[unknown] = 0, samples.torus_logs.shape[1] - 1, 4
+    return low, high, top, noise
+
+
+def chosen_at(vertices: Ints, samples: Samples, logs: Floats) -> Choice:
+    """The least mean logarithmic risk among the samples near each vertex."""
+    choice = _empty_choice(len(vertices))
+    covers.choices(vertices, samples.starts, samples.near, logs, *choice)
+    return choice
+
+
+def select(
+    sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, window: tuple[Ints, Ints, Ints, Floats],
+    links: tuple[Ints, Ints], passes: int, tasks: Tasks,
+) -> Choice:  # fmt: skip
+    """The least risk of each centre among the radii low..high and orders up to `top`, for known noise."""
+    low, high, top, noise = window
+    spacing = sheet.spacing[centres]
+    rows = np.zeros(len(centres) + 1, np.int64)
+    np.cumsum(high - low + 1, out=rows[1:])
+    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise)
+    tables = fill_tables(fitting, True, tasks, 0.4)
+    return _least(ladder, spacing, 4, tables, rows, low, high, links, passes, np.empty((0, 0, 0)))
+
+
+def _least(
+    ladder: Ladder, spacing: Floats, power: int, tables: patch_fits.Tables, rows: NDArray[np.int64],
+    low: Ints, high: Ints, links: tuple[Ints, Ints], passes: int, logs: Floats,
+) -> Choice:  # fmt: skip
+    """The choice of least risk, which is in units of length; its logarithms in those of the spacings."""
+    place = (spacing, power, rows, low, high, links)
+    bias, bias_variance, jump = (
+        _averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance, tables.jump)
+    )
+    variance = _averaged(tables.variance, *place, 1)
+    choice = _empty_choice(len(spacing))
+    risks.least_risks(rows, low, high, ladder.reaches, tables, variance, bias, bias_variance, jump, RESOLVED**power, *choice, logs)
+    return choice._replace(risk=choice.risk / spacing**power)
+
+
+def _averaged(
+    values: NDArray[np.float32], spacing: Floats, power: int, rows: NDArray[np.int64], low: Ints, high: Ints,
+    links: tuple[Ints, Ints], passes: int,
+) -> NDArray[np.float32]:  # fmt: skip
+    for _ in range(passes):
+        out = np.empty_like(values)
+        risks.average_rows(values, spacing, power, rows, low, high, links[1], links[0], out)
+        values = out
+    return values
+
+
+def _empty_choice(n: int) -> Choice:
+    return Choice(np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n))

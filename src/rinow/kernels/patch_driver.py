@@ -1,0 +1,94 @@
+"""The loop over the centres of patches.
+
+Growing balls and fitting is by far the most code to compile, so one kernel does all that is done with fits.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rinow.kernels import balls, nested_fits, patch_fits, patches
+from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels.nested_fits import MAX_ORDER, TERMS
+
+TABLES, FRAMES, VALUES = 0, 1, 2
+
+
+class Centres(NamedTuple):
+    """Vertices (n,) about which balls grow, and what is to be fitted there.
+
+    For each the frame (11,) of its torus, the first and last index of its radii, the factor of these radii, the highest
+    order, the first row of its results (n + 1,), and the variance of the noise.
+    """
+
+    vertices: np.ndarray
+    frames: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    factors: np.ndarray
+    orders: np.ndarray
+    rows: np.ndarray
+    noise: np.ndarray
+
+
+class Patches(NamedTuple):
+    """Radii of cores (n,), risks (n,), the power of a risk in a weight, and the values (m, N) at vertices (m,)."""
+
+    cores: np.ndarray
+    risks: np.ndarray
+    power: float
+    vertices: np.ndarray
+    values: np.ndarray
+
+
+class Work(NamedTuple):
+    """Work space of one thread."""
+
+    ball: balls.Ball
+    fit: nested_fits.Fits
+    coefficients: np.ndarray
+
+
+@kernel
+def treat(i, task, is_mean, reaches, centres, sheet, tables, frames, out, work, values, gradients):
+    """Grow the balls about one centre, fit, and write what the task asks for."""
+    ball, fit = work.ball, work.fit
+    v, frame, order = centres.vertices[i], centres.frames[i], centres.orders[i]
+    start, stop, spacing = centres.rows[i], centres.rows[i + 1], sheet.spacing[v]
+    if task == FRAMES:
+        frames[i] = frame
+    if task == VALUES:
+        out.vertices[start:stop] = -1
+    if order < 2:
+        return
+    own = reaches[centres.low[i] : centres.high[i] + 1] * centres.factors[i]
+    size = balls.grow(v, frame, own[-1], i + 1, sheet, ball)
+    asked = order + 1 if task == VALUES and order % 2 == 0 and order < MAX_ORDER else order
+    asked = nested_fits.highest_order(size, asked)
+    if asked >= 2:
+        nested_fits.add_moments(ball.points, size, own, asked, fit)
+    if task == TABLES:
+        k1, k2, s2 = frame[9] * spacing, frame[10] * spacing, centres.noise[i] / (spacing * spacing)
+        patch_fits.write_rows(start, own, asked, is_mean, k1, k2, s2, fit, tables, values, gradients)
+    elif asked >= 2:
+        top = nested_fits.fit_orders(0, own[0], asked, fit)
+        if task == FRAMES and top >= 2:
+            patches.write_frame(fit.jets[top], spacing, frame, frames[i])
+        elif top >= 2:
+            patch = patches.Patch(out.cores[i], centres.noise[i], out.risks[i], out.power, order)
+            patches.write_patch(
+                start, stop, size, top, asked, own[0], frame, patch, fit, sheet, ball, work.coefficients,
+                out.vertices, out.values,
+            )  # fmt: skip
+
+
+@parallel_kernel
+def treat_all(task, is_mean, reaches, most, n_blocks, centres, sheet, tables, frames, out):
+    """Write rows of the tables, frames (n, 11) or values of patches for all centres."""
+    n = len(centres.vertices)
+    for block in prange(n_blocks):
+        ball, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(len(reaches))
+        work = Work(ball, fit, np.empty(TERMS[MAX_ORDER]))
+        values, gradients = np.empty(MAX_ORDER + 1), [(0.0, 0.0, 0.0)] * (MAX_ORDER + 1)
+        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            treat(i, task, is_mean, reaches, centres, sheet, tables, frames, out, work, values, gradients)
