@@ -28,6 +28,7 @@ Floats = NDArray[np.float64]
 
 INTRINSIC = {"angle_defect": angle_defect, "intrinsic": intrinsic, "wald": wald}
 METHODS = ("auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect")
+WITH_RADIUS = ("sectional", "intrinsic")
 QUALITIES = ("best", "fast")
 NO_VALUE = (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE)
 SCALARS = ("gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "radius", "spread")
@@ -203,7 +204,7 @@ def _checked_radius(radius: float, method: str) -> float:
     value = as_floats(radius, "radius")
     if value.ndim or not 0.0 < value < np.inf:
         raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
-    if method != "sectional":
+    if method not in WITH_RADIUS:
         raise InvalidInputError(
             f"radius = {radius!r} is not for method {method!r}, which takes the star of each vertex; leave it out."
         )
@@ -219,7 +220,10 @@ def _estimate(
 ) -> Estimate:
     if method == "sectional":
         return sectional(as_triangle_mesh(mesh), radius=radius, progress=progress, executor=executor)
-    estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
+    if method == "intrinsic":
+        estimate = intrinsic(mesh, radius=radius)
+    else:
+        estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
     return estimate

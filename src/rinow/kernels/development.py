@@ -128,7 +128,7 @@ def develop(v, radius, stretch, metric, members, slots, points, counts):
             if last - first > HUB or points[m, 0] ** 2 + points[m, 1] ** 2 >= radius * radius:
                 continue
             for i in range(first, last):
-                n = place_across(metric.corners[i], m, begin, end, n, metric, members, slots, points, counts)
+                n = place_across(metric.corners[i], m, end, n, metric, members, slots, points, counts)
         for m in range(end, n):
             points[m, 0] /= counts[m]
             points[m, 1] /= counts[m]
@@ -139,10 +139,10 @@ def develop(v, radius, stretch, metric, members, slots, points, counts):
 
 
 @kernel
-def place_across(c, m, begin, end, n, metric, members, slots, points, counts):
+def place_across(c, m, end, n, metric, members, slots, points, counts):
     """Add a place for the vertex of the face of corner c that is no member yet, if the two others are; see `develop`.
 
-    A face on two members of the last wave is taken once, from the later one.
+    A face on two members of the last wave counts twice.
     """
     for side in range(2):
         a, b = next_corner(c), previous_corner(c)
@@ -150,8 +150,6 @@ def place_across(c, m, begin, end, n, metric, members, slots, points, counts):
             a, b = b, a
         p, q = metric.faces[a // 3, a % 3], metric.faces[b // 3, b % 3]
         if not is_member(p, end, members, slots) or is_member(q, end, members, slots):
-            continue
-        if slots[p] >= begin and slots[p] > m:
             continue
         x, y = beyond(b, points, m, slots[p], end, metric, members, slots)
         if is_member(q, n, members, slots):
