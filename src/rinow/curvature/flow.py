@@ -20,7 +20,7 @@ Indices = NDArray[np.intp]
 N_BLOCKS = 16
 REACH = 2.1
 """Radius of the small regression in local spacings: the first ring of a regular mesh and a little of the second."""
-BALANCE_SWEEPS = 4
+BALANCE_SWEEPS = 3
 """Corrections of the weights that make S keep the total curvature; the error at the scale of a few vertices, which is
 what matters, falls by more than half with each."""
 NEEDLES = 3.0
@@ -78,7 +78,7 @@ class CurvatureFlow:
         return sums
 
     @cached_property
-    def _rows(self) -> tuple[Indices, Indices, Floats, Floats]:
+    def _rows(self) -> tuple[Indices, NDArray[np.int32], Floats, Floats]:
         t, n = self.mesh.topology, self.mesh.n_vertices
         radii = REACH * self.spacing
         weights = self.areas.copy()

@@ -27,6 +27,8 @@ NOISE_PROBES = ((2, 2), (4, 2), (8, 2), (8, 3))
 """Steps and order of the fits whose residuals tell the noise; the smallest residual counts."""
 PASSES, SHRINK_PASSES = 10, 40
 """Repetitions of the mean over a ring that average squared errors."""
+VARIANCE_PASSES = 3
+"""The same for the mean that a variance is raised to."""
 SUPPORT = 10.0
 """Squared radius of the ball over the variance of the weights (1 - (d/radius)²)³ in it along one axis."""
 FLAT_RINGS, FLAT_DEFECT = 3, 1e-10
@@ -116,8 +118,8 @@ def intrinsic_curvature(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | N
     for m in LADDER:
         here = None if wanted is None else wanted == m
         if here is None or here.any():
-            for order in range(1, (ORDER if m else 1) + 1):
-                _improve(best, _candidate(m, order, flow, noise, powers, tau2), here)
+            for candidate in _candidates(m, flow, noise, powers, tau2):
+                _improve(best, candidate, here)
         powers.forget(m + 1)
     best.gaussian[_is_flat(flow) & np.isfinite(best.gaussian)] = 0.0
     _shrink(best, flow)
@@ -160,26 +162,34 @@ def _noise_level(flow: CurvatureFlow, noise: LengthNoise, powers: Powers) -> Flo
     return np.fmin.reduce(flow.means(columns, PASSES), axis=1)
 
 
-def _candidate(
-    m: int, order: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats
-) -> IntrinsicCurvature:
-    """The estimate of one scale and order."""
-    coefficients = combination(m, order)
-    values = powers.combined(coefficients) if m else np.where(flow.has_data, powers[0], np.nan)
-    variance = tau2 * noise.variance(coefficients if m else {0: 1.0})
-    variance[~np.isfinite(values)] = np.nan
-    variance = np.fmax(variance, flow.means(variance, 3))
-    squared_bias = np.zeros(len(values))
-    if m:
-        half = REFERENCE[m]
-        reference = combination(half, order + 1 if half == m else min(order + 1, ORDER))
-        difference = {k: reference.get(k, 0.0) - coefficients.get(k, 0.0) for k in {*reference, *coefficients}}
-        seen = tau2 * noise.variance(difference)
-        excess = powers.combined(difference) ** 2 - seen
-        passes = max(PASSES, m)
-        squared_bias = np.fmax(flow.means(excess, passes), FLOOR * np.fmax(seen, flow.means(seen, PASSES)))
+def _candidates(
+    m: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats
+) -> list[IntrinsicCurvature]:
+    """The estimates of one scale, for all orders."""
+    combinations = [combination(m, order) for order in range(1, ORDER + 1)] if m else [{0: 1.0}]
+    values = [powers.combined(c) if m else np.where(flow.has_data, flow.start, np.nan) for c in combinations]
+    variances = np.column_stack([np.where(np.isfinite(values[0]), tau2 * noise.variance(c), np.nan) for c in combinations])
     radius = np.sqrt(np.fmax(SUPPORT * m * noise.step, flow.spacing**2))
-    return IntrinsicCurvature(values, variance, squared_bias, radius)
+    if not m:
+        variances = np.fmax(variances, flow.means(variances, VARIANCE_PASSES))
+        return [IntrinsicCurvature(values[0], variances[:, 0], np.zeros(len(radius)), radius)]
+    differences = [_difference(_reference(m, order + 1), c) for order, c in enumerate(combinations)]
+    seen = np.column_stack([tau2 * noise.variance(d) for d in differences])
+    excess = np.column_stack([powers.combined(d) ** 2 for d in differences]) - seen
+    both = np.concatenate([variances, seen], axis=1)
+    variances, seen = np.split(np.fmax(both, flow.means(both, VARIANCE_PASSES)), 2, axis=1)
+    biases = np.fmax(flow.means(excess, max(PASSES, m)), FLOOR * seen)
+    return [IntrinsicCurvature(values[r], variances[:, r], biases[:, r], radius) for r in range(ORDER)]
+
+
+def _reference(m: int, order: int) -> dict[int, float]:
+    """What the candidate of m steps and this order is compared with: half the steps and, if there is one, an order more."""
+    half = REFERENCE[m]
+    return combination(half, order + 1 if half == m else min(order + 1, ORDER))
+
+
+def _difference(a: dict[int, float], b: dict[int, float]) -> dict[int, float]:
+    return {k: a.get(k, 0.0) - b.get(k, 0.0) for k in {*a, *b}}
 
 
 def _improve(best: IntrinsicCurvature, candidate: IntrinsicCurvature, where: NDArray[np.bool_] | None) -> None:

@@ -13,6 +13,10 @@ HUB = 100
 """Developments grow through no vertex with more corners than this, such as the centre of a fan: it is near too many."""
 
 
+GROWTH = 0.75
+"""Share of the radius within which members carry the growth on: their stars reach the radius."""
+
+
 class Metric(NamedTuple):
     """Faces (n, 3), their side lengths and angles, compressed rows of corners, and partners of half-edges."""
 
@@ -117,7 +121,7 @@ def develop(v, radius, stretch, metric, members, slots, points, counts):
     """Unroll the faces around v as far as `radius`; the number of members, each with its place in `points`.
 
     Waves run out from the fan of v: a vertex with faces on two or more placed vertices gets the mean of the places
-    they give it.  Nothing depends on the order of vertices or faces.  Members beyond the radius end the growth.
+    they give it.  Nothing depends on the order of vertices or faces.
     """
     n = lay_out_fan(v, stretch, metric, members, slots, points)
     begin, end = 1, n
@@ -125,7 +129,7 @@ def develop(v, radius, stretch, metric, members, slots, points, counts):
         for m in range(begin, end):
             w = members[m]
             first, last = metric.offsets[w], metric.offsets[w + 1]
-            if last - first > HUB or points[m, 0] ** 2 + points[m, 1] ** 2 >= radius * radius:
+            if last - first > HUB or points[m, 0] ** 2 + points[m, 1] ** 2 >= (GROWTH * radius) ** 2:
                 continue
             for i in range(first, last):
                 n = place_across(metric.corners[i], m, end, n, metric, members, slots, points, counts)
