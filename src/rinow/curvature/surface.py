@@ -113,15 +113,17 @@ def surface_curvature(
     mesh : TriangleMesh, IntrinsicMesh, (V, F) pair, or object with vertices and faces
         The surface.  Vertices may be unused or not finite, faces degenerate, misoriented or not manifold: `status`
         tells where no value is defined.  A soup of separate triangles is welded for the computation.
-    method : {"auto", "sectional", "lifted", "wald", "angle_defect"}, optional
+    method : {"auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect"}, optional
         "sectional" fits the circles through each vertex and the others in a ball; "lifted" takes the angles of the
-        star after its edges were lifted to arcs; "wald" is the embedding curvature of the star; "angle_defect" is
-        the angle defect over a third of the area.  The last two need edge lengths only and give `gaussian` only.
+        star after its edges were lifted to arcs; "intrinsic" averages angle defects at a scale chosen at each vertex;
+        "wald" is the embedding curvature of the star; "angle_defect" is the angle defect over a third of the area.
+        The last three need edge lengths only and give `gaussian` only.
         "auto" is the most accurate of them that the mesh and `quality` allow.
     quality : {"best", "fast"}, optional
         What "auto" prefers: "sectional" or "lifted" for a mesh with positions.
     radius : float, optional
-        Radius of the balls of "sectional", positive, in the unit of length; by default four local spacings.
+        Radius of the balls of "sectional" and "intrinsic", positive, in the unit of length; by default four local
+        spacings, or chosen at every vertex.
     progress : callable, optional
         Called with the number of vertices done and their total.
     executor : Executor, optional
