@@ -26,6 +26,15 @@ ORDER = 3
 NOISE_PROBES = ((2, 2), (4, 2), (8, 2), (8, 3))
 """Steps and order of the fits whose residuals tell the noise; the smallest residual counts."""
 PASSES, SHRINK_PASSES = 10, 40
+"""Repetitions of the mean over a ring that average squared errors."""
+VARIANCE_PASSES = 3
+"""The same for the mean that a variance is raised to."""
+CALIBRATION = 1.3
+"""Spread over the root of the least predicted squared error: the candidate chosen is the one that looks best."""
+SUPPORT = 10.0
+"""Squared radius of the ball over the variance of the weights (1 - (d/radius)²)³ in it along one axis."""
+FLAT_RINGS, FLAT_DEFECT = 3, 1e-10
+"""A vertex with defects below this within so many rings is flat."""
 FLOOR = 0.1
 """Share of the variance of a comparison that its square cannot be told from: least squared bias."""
 
@@ -86,21 +95,62 @@ class Powers:
 NEEDED = frozenset(j * m for m in LADDER for j in range(1, ORDER + 2))
 
 
-def intrinsic_curvature(mesh: TriangleMesh | IntrinsicMesh) -> IntrinsicCurvature:
-    """Gaussian curvature from edge lengths, with variance and squared bias; see `intrinsic`."""
+def intrinsic_curvature(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None) -> IntrinsicCurvature:
+    """Gaussian curvature from edge lengths, with variance and squared bias; see `intrinsic`.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh or IntrinsicMesh
+        The surface; only edge lengths are used.
+    radius : float, optional
+        Radius of the balls in units of length, or the nearest to it that competes; by default the best of all.
+
+    Returns
+    -------
+    IntrinsicCurvature
+        Values and their predicted squared errors at every vertex.
+    """
     flow = CurvatureFlow(mesh)
     noise = LengthNoise.of(flow)
     powers = Powers(flow)
     tau2 = _noise_level(flow, noise, powers)
     n = mesh.n_vertices
     best = IntrinsicCurvature(np.full(n, np.nan), np.full(n, np.inf), np.zeros(n), np.zeros(n))
+    wanted = None if radius is None else _nearest_rung(radius, noise)
     for m in LADDER:
-        radius = np.sqrt(10.0 * m * noise.step)
-        for order in range(1, (ORDER if m else 1) + 1):
-            candidate = _candidate(m, order, flow, noise, powers, tau2, radius)
-            _improve(best, candidate)
+        here = None if wanted is None else wanted == m
+        if here is None or here.any():
+            for candidate in _candidates(m, flow, noise, powers, tau2):
+                _improve(best, candidate, here)
         powers.forget(m + 1)
+    best.gaussian[_is_flat(flow) & np.isfinite(best.gaussian)] = 0.0
+    _shrink(best, flow)
+    for values in (best.variance, best.squared_bias, best.radius):
+        values[~np.isfinite(best.gaussian)] = np.nan
     return best
+
+
+def _nearest_rung(radius: float, noise: LengthNoise) -> Floats:
+    """(n_vertices,): the number of steps of the ladder whose ball has nearly that radius."""
+    with np.errstate(all="ignore"):
+        steps = radius**2 / (SUPPORT * noise.step)
+    between = np.sqrt(np.multiply(LADDER[1:], np.maximum(LADDER[:-1], 0.5)))
+    return np.asarray(LADDER)[np.searchsorted(between, np.nan_to_num(steps))]
+
+
+def _is_flat(flow: CurvatureFlow) -> NDArray[np.bool_]:
+    """(n_vertices,): no defect of the vertices with data within three rings differs from 0 by more than rounding."""
+    curved = flow.has_data & (np.abs(flow.mesh.vertex_angle_defects) > FLAT_DEFECT)
+    return flow.means(curved.astype(np.float64), FLAT_RINGS) == 0.0
+
+
+def _shrink(best: IntrinsicCurvature, flow: CurvatureFlow) -> None:
+    """Pull values towards 0 where, around a vertex, their squares are no larger than the errors predicted (Stein)."""
+    risk = best.variance + best.squared_bias
+    total = flow.means(best.gaussian**2, SHRINK_PASSES)
+    error = flow.means(np.where(np.isfinite(risk), np.minimum(risk, total), np.nan), SHRINK_PASSES)
+    with np.errstate(all="ignore"):
+        best.gaussian[:] *= np.where(total > 0.0, np.maximum(1.0 - error / total, 0.0), 1.0)
 
 
 def _noise_level(flow: CurvatureFlow, noise: LengthNoise, powers: Powers) -> Floats:
@@ -114,35 +164,82 @@ def _noise_level(flow: CurvatureFlow, noise: LengthNoise, powers: Powers) -> Flo
     return np.fmin.reduce(flow.means(columns, PASSES), axis=1)
 
 
-def _candidate(
-    m: int, order: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats, radius: Floats
-) -> IntrinsicCurvature:
-    """The estimate of one scale and order."""
-    coefficients = combination(m, order)
-    values = powers.combined(coefficients) if m else np.where(flow.has_data, powers[0], np.nan)
-    variance = tau2 * noise.variance(coefficients if m else {0: 1.0})
-    variance[~np.isfinite(values)] = np.nan
-    variance = np.fmax(variance, flow.means(variance, 3))
-    squared_bias = np.zeros(len(values))
-    if m:
-        half = REFERENCE[m]
-        reference = combination(half, order + 1 if half == m else min(order + 1, ORDER))
-        difference = {k: reference.get(k, 0.0) - coefficients.get(k, 0.0) for k in {*reference, *coefficients}}
-        seen = tau2 * noise.variance(difference)
-        excess = powers.combined(difference) ** 2 - seen
-        passes = max(PASSES, m)
-        squared_bias = np.fmax(flow.means(excess, passes), FLOOR * np.fmax(seen, flow.means(seen, PASSES)))
-    return IntrinsicCurvature(values, variance, squared_bias, radius)
+def _candidates(
+    m: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats
+) -> list[IntrinsicCurvature]:
+    """The estimates of one scale, for all orders."""
+    combinations = [combination(m, order) for order in range(1, ORDER + 1)] if m else [{0: 1.0}]
+    values = [powers.combined(c) if m else np.where(flow.has_data, flow.start, np.nan) for c in combinations]
+    variances = np.column_stack([tau2 * noise.variance(c) for c in combinations])
+    variances[~np.isfinite(values[0])] = np.nan
+    radius = np.sqrt(np.fmax(SUPPORT * m * noise.step, flow.spacing**2))
+    if not m:
+        variances = np.fmax(variances, flow.means(variances, VARIANCE_PASSES))
+        return [IntrinsicCurvature(values[0], variances[:, 0], np.zeros(len(radius)), radius)]
+    differences = [_difference(_reference(m, order + 1), c) for order, c in enumerate(combinations)]
+    seen = np.column_stack([tau2 * noise.variance(d) for d in differences])
+    excess = np.column_stack([powers.combined(d) ** 2 for d in differences]) - seen
+    both = np.concatenate([variances, seen], axis=1)
+    variances, seen = np.split(np.fmax(both, flow.means(both, VARIANCE_PASSES)), 2, axis=1)
+    biases = np.fmax(flow.means(excess, max(PASSES, m)), FLOOR * seen)
+    return [IntrinsicCurvature(values[r], variances[:, r], biases[:, r], radius) for r in range(ORDER)]
 
 
-def _improve(best: IntrinsicCurvature, candidate: IntrinsicCurvature) -> None:
+def _reference(m: int, order: int) -> dict[int, float]:
+    """What the candidate of m steps and this order is compared with: half the steps, an order more if there is one."""
+    half = REFERENCE[m]
+    return combination(half, order + 1 if half == m else min(order + 1, ORDER))
+
+
+def _difference(a: dict[int, float], b: dict[int, float]) -> dict[int, float]:
+    """Coefficients of a minus those of b."""
+    return {k: a.get(k, 0.0) - b.get(k, 0.0) for k in {*a, *b}}
+
+
+def _improve(best: IntrinsicCurvature, candidate: IntrinsicCurvature, where: NDArray[np.bool_] | None) -> None:
     """Take the candidate wherever its predicted squared error is smaller."""
     better = candidate.variance + candidate.squared_bias < best.variance + best.squared_bias
+    if where is not None:
+        better &= where
     for name in ("gaussian", "variance", "squared_bias", "radius"):
         getattr(best, name)[better] = getattr(candidate, name)[better]
 
 
-def intrinsic(mesh: TriangleMesh | IntrinsicMesh) -> Estimate:
-    """Gaussian curvature of a surface known by its edge lengths, the scale and order chosen at every vertex."""
-    found = intrinsic_curvature(mesh)
-    return Estimate(found.gaussian, np.sqrt(found.variance + found.squared_bias), found.radius)
+def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None) -> Estimate:
+    r"""Gaussian curvature of a surface known by its edge lengths, the scale and order chosen at every vertex.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh or IntrinsicMesh
+        The surface; only edge lengths are used.
+    radius : float, optional
+        Radius of the balls averaged over; by default chosen at every vertex.
+
+    Returns
+    -------
+    estimate : Estimate
+        `gaussian` everywhere but at vertices that are not manifold or far from any interior vertex; at the boundary
+        from the interior nearby.  `spread` is 1.3 times the root of the predicted squared error.
+
+    Notes
+    -----
+    By Gauss and Bonnet every metric curvature at a scale is a weighted mean of angle defects.  Here the weights are
+    the powers of one small operator S, a regression over 2.1 spacings in the developed metric that
+
+    - keeps constants, and linear functions away from the boundary: it adds no error of first order,
+    - keeps the total curvature, so that its weights vary smoothly from defect to defect and the noise of each
+      length, which enters four defects with the sum 0, cancels.
+
+    :math:`S^m` then averages like the heat flow at the time :math:`m\sigma^2/2`.  With K the defects over areas the
+    candidates are :math:`K_{m,r} = (I - (I - S^m)^r) K`, with the errors :math:`(I - S^m)^r K`, of order 2r in scale,
+    for r = 1, 2, 3 and m = 0, 1, 2, 3, 4, 6, ... 128.  At each vertex the one with the least sum of variance and
+    squared bias is taken.  The variance is that of `LengthNoise`, its level from the residuals of small fits.  The
+    squared bias of :math:`K_{m,r}` is the mean over a neighbourhood of :math:`(K_{m/2,r+1} - K_{m,r})^2`,
+    less the variance of this difference.  At the end the values are multiplied by the positive part of
+    :math:`1 - \langle error^2 \rangle / \langle K^2 \rangle` (James and Stein); a surface without defects has K = 0.
+
+    What no comparison of scales can tell is not in the spread: a mesh of chords has a metric that differs from that of
+    the smooth surface by :math:`O(h^2)`.
+    """
+    found = intrinsic_curvature(mesh, radius=radius)
+    return Estimate(found.gaussian, CALIBRATION * np.sqrt(found.variance + found.squared_bias), found.radius)

@@ -47,7 +47,8 @@ class LengthNoise:
         n = flow.mesh.n_vertices
         squares, density = np.empty(n), np.empty(n)
         smoothing.defect_sensitivities(flow.metric, flow.mesh.face_areas, squares, density)
-        columns = np.column_stack([np.where(flow.has_data, x, np.nan) for x in (density, flow.step_variances)])
+        columns = np.column_stack([density, flow.step_variances])
+        columns[~flow.has_data] = np.nan
         density, step = flow.means(columns, 4).T
         with np.errstate(all="ignore"):
             start = (GAUSSIAN * density * flow.areas**2 / squares) ** (1.0 / 3.0)
@@ -61,5 +62,6 @@ class LengthNoise:
         for i, (m, a) in enumerate(items):
             for k, b in items[: i + 1]:
                 scale = 0.5 * (m + k) * self.step + self.start
-                total += (1.0 if k == m else 2.0) * a * b / (scale * scale * scale)
+                with np.errstate(all="ignore"):
+                    total += (1.0 if k == m else 2.0) * a * b / (scale * scale * scale)
         return GAUSSIAN * self.density * total

@@ -28,7 +28,8 @@ __all__ = ["SurfaceCurvature", "surface_curvature"]
 Floats = NDArray[np.float64]
 
 INTRINSIC = {"angle_defect": angle_defect, "intrinsic": intrinsic, "wald": wald}
-WITH_RADIUS = {"auto": auto, "sectional": sectional}
+BY_POSITIONS = {"auto": auto, "sectional": sectional}
+WITH_RADIUS = ("auto", "sectional", "intrinsic")
 METHODS = ("auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect")
 QUALITIES = ("best", "fast")
 NO_VALUE = (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE)
@@ -125,7 +126,8 @@ def surface_curvature(
         "fast" lets a sample of the vertices decide about order and scale around it, with fewer patches, and is
         several times faster; for "sectional" and "auto".
     radius : float, optional
-        Radius of all balls of "sectional" and "auto", positive, in the unit of length; by default the data decide.
+        Radius of all balls of "sectional" and "auto", or of the averages of "intrinsic", positive, in the unit of
+        length; by default the data decide.
     progress : callable, optional
         Called with the number of vertices done and their total.
     executor : Executor, optional
@@ -219,10 +221,13 @@ def _estimate(
     progress: Callable[[int, int], object] | None,
     executor: Executor | None,
 ) -> Estimate:
-    if method in WITH_RADIUS:
+    if method in BY_POSITIONS:
         options: dict[str, Any] = {"quality": quality, "radius": radius, "progress": progress, "executor": executor}
-        return WITH_RADIUS[method](as_triangle_mesh(mesh), **options)
-    estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
+        return BY_POSITIONS[method](as_triangle_mesh(mesh), **options)
+    if method == "intrinsic":
+        estimate = intrinsic(mesh, radius=radius)
+    else:
+        estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
     return estimate

@@ -13,6 +13,10 @@ HUB = 100
 """Developments grow through no vertex with more corners than this, such as the centre of a fan: it is near too many."""
 
 
+GROWTH = 0.75
+"""Share of the radius within which members carry the growth on: their stars reach the radius."""
+
+
 class Metric(NamedTuple):
     """Faces (n, 3), their side lengths and angles, compressed rows of corners, and partners of half-edges."""
 
@@ -117,7 +121,7 @@ def develop(v, radius, stretch, metric, members, slots, points, counts):
     """Unroll the faces around v as far as `radius`; the number of members, each with its place in `points`.
 
     Waves run out from the fan of v: a vertex with faces on two or more placed vertices gets the mean of the places
-    they give it.  Nothing depends on the order of vertices or faces.  Members beyond the radius end the growth.
+    they give it.  Nothing depends on the order of vertices or faces.
     """
     n = lay_out_fan(v, stretch, metric, members, slots, points)
     begin, end = 1, n
@@ -125,10 +129,10 @@ def develop(v, radius, stretch, metric, members, slots, points, counts):
         for m in range(begin, end):
             w = members[m]
             first, last = metric.offsets[w], metric.offsets[w + 1]
-            if last - first > HUB or points[m, 0] ** 2 + points[m, 1] ** 2 >= radius * radius:
+            if last - first > HUB or points[m, 0] ** 2 + points[m, 1] ** 2 >= (GROWTH * radius) ** 2:
                 continue
             for i in range(first, last):
-                n = place_across(metric.corners[i], m, begin, end, n, metric, members, slots, points, counts)
+                n = place_across(metric.corners[i], m, end, n, metric, members, slots, points, counts)
         for m in range(end, n):
             points[m, 0] /= counts[m]
             points[m, 1] /= counts[m]
@@ -139,10 +143,10 @@ def develop(v, radius, stretch, metric, members, slots, points, counts):
 
 
 @kernel
-def place_across(c, m, begin, end, n, metric, members, slots, points, counts):
+def place_across(c, m, end, n, metric, members, slots, points, counts):
     """Add a place for the vertex of the face of corner c that is no member yet, if the two others are; see `develop`.
 
-    A face on two members of the last wave is taken once, from the later one.
+    A face on two members of the last wave counts twice.
     """
     for side in range(2):
         a, b = next_corner(c), previous_corner(c)
@@ -150,8 +154,6 @@ def place_across(c, m, begin, end, n, metric, members, slots, points, counts):
             a, b = b, a
         p, q = metric.faces[a // 3, a % 3], metric.faces[b // 3, b % 3]
         if not is_member(p, end, members, slots) or is_member(q, end, members, slots):
-            continue
-        if slots[p] >= begin and slots[p] > m:
             continue
         x, y = beyond(b, points, m, slots[p], end, metric, members, slots)
         if is_member(q, n, members, slots):

@@ -58,6 +58,15 @@ def slope_terms(mx, my, xx, xy, yy):
 
 
 @kernel
+def sees_gap(n, radius, areas, members, points):
+    """Whether a member within the radius has no data."""
+    for m in range(n):
+        if areas[members[m]] == 0.0 and points[m, 0] ** 2 + points[m, 1] ** 2 < radius * radius:
+            return True
+    return False
+
+
+@kernel
 def develop_ball(v, radius, is_closed, metric, members, slots, points, counts):
     """`develop`, angles of a closed star scaled to 2π; 0 members without a face."""
     if metric.offsets[v + 1] == metric.offsets[v]:
@@ -101,8 +110,9 @@ def regression_rows(radii, areas, is_fan, is_closed, metric, n_blocks, starts, c
             total, mx, my, xx, xy, yy = weighted_moments(k, radii[v], areas, members, points, weights)
             variances[v] = 0.5 * (xx + yy)
             gx, gy = slope_terms(mx, my, xx, xy, yy)
-            share = max(1.0 - (gx * mx + gy * my) / ONE_SIDED, 0.0)
-            gx, gy = share * gx, share * gy
+            if sees_gap(k, radii[v], areas, members, points):
+                share = max(1.0 - (gx * mx + gy * my) / ONE_SIDED, 0.0)
+                gx, gy = share * gx, share * gy
             i = starts[v]
             for m in range(k):
                 if areas[members[m]] > 0.0 and points[m, 0] ** 2 + points[m, 1] ** 2 < radii[v] ** 2:
@@ -119,6 +129,15 @@ def apply_rows(starts, columns, values, x, out):
         for i in range(starts[v], starts[v + 1]):
             total += values[i] * x[columns[i]]
         out[v] = total if starts[v + 1] > starts[v] else np.nan
+
+
+@kernel
+def column_sums(starts, columns, values, factors, out):
+    """Write the sum of factor times value over each column, the factors belonging to the rows."""
+    out[:] = 0.0
+    for v in range(starts.shape[0] - 1):
+        for i in range(starts[v], starts[v + 1]):
+            out[columns[i]] += factors[v] * values[i]
 
 
 @parallel_kernel

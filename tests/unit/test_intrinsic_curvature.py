@@ -1,0 +1,203 @@
+"""Curvature from edge lengths alone: closed forms, orders, invariance, noise, faults of meshes."""
+
+import numpy as np
+import pytest
+
+import shapes
+from rinow import IntrinsicMesh, InvalidInputError, TriangleMesh, VertexStatus, surface_curvature
+from rinow.curvature.flow import CurvatureFlow
+from rinow.curvature.intrinsic import CALIBRATION, combination, intrinsic_curvature
+from rinow.curvature.length_noise import LengthNoise
+
+TORUS = shapes.noisy(shapes.irregular_torus(1500), 0.05)
+
+
+def curvature(shape, **options):
+    return surface_curvature((shape.vertices, shape.faces), method="intrinsic", **options)
+
+
+def relative_error(shape, **options):
+    error = curvature(shape, **options).gaussian - shape.gaussian
+    return np.sqrt(np.mean(error**2) / np.mean(shape.gaussian**2))
+
+
+def flat_torus(n=24):
+    """Lengths of a jittered triangulation of the unit square with opposite sides glued."""
+    rng = np.random.default_rng(7)
+    i, j = (x.ravel() for x in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
+    xy = (np.stack([i, j], 1) + rng.uniform(-0.25, 0.25, (n * n, 2))) / n
+
+    def corner(a, b):
+        return (a % n) * n + b % n
+
+    F = np.concatenate(
+        [np.stack([corner(i, j), corner(i + 1, j), corner(i + 1, j + 1)], 1),
+         np.stack([corner(i, j), corner(i + 1, j + 1), corner(i, j + 1)], 1)]
+    )  # fmt: skip
+    sides = np.stack([xy[F[:, (k + 1) % 3]] - xy[F[:, (k + 2) % 3]] for k in range(3)], 1)
+    return IntrinsicMesh(F, np.linalg.norm(sides - np.round(sides), axis=2))
+
+
+def hyperbolic_patch(n=1500):
+    """Distances between the points of an irregular disk of radius 1 in the plane of curvature -1."""
+    from scipy.spatial import Delaunay
+
+    rng = np.random.default_rng(7)
+    i = np.arange(n) + 0.5
+    r = np.sqrt(i / n) + rng.uniform(-0.2, 0.2, n) / np.sqrt(n)
+    phi = np.pi * (1 + 5**0.5) * i
+    klein = np.tanh(r)[:, None] * np.stack([np.cos(phi), np.sin(phi)], 1)  # geodesics are straight in these
+    F = Delaunay(klein).simplices
+    P = np.stack([np.sinh(r) * np.cos(phi), np.sinh(r) * np.sin(phi), np.cosh(r)], 1)
+    d = [P[F[:, (k + 1) % 3]] - P[F[:, (k + 2) % 3]] for k in range(3)]
+    chords = [np.sqrt(e[:, 0] ** 2 + e[:, 1] ** 2 - e[:, 2] ** 2) for e in d]
+    return IntrinsicMesh(F, 2 * np.arcsinh(np.stack(chords, 1) / 2)), r
+
+
+# ------------------------------------------------------------------ values
+
+
+def test_a_flat_torus_is_exactly_flat():
+    mesh = flat_torus()
+    assert (surface_curvature(mesh, method="intrinsic").gaussian == 0).all()
+
+
+def test_the_hyperbolic_plane():
+    mesh, r = hyperbolic_patch()
+    c = surface_curvature(mesh, method="intrinsic")
+    inner = r < 0.8
+    # The lengths are those of the surface itself: what is left is the area of flat triangles, K h²/8 = 0.0004.
+    np.testing.assert_allclose(c.gaussian[inner], -1, atol=2e-3)
+    assert (c.status[~mesh.topology.vertex_is_boundary] == VertexStatus.OK).all()
+
+
+def test_boundary_vertices_get_values_from_the_interior():
+    mesh, _ = hyperbolic_patch()
+    c = surface_curvature(mesh, method="intrinsic")
+    boundary = mesh.topology.vertex_is_boundary
+    assert (c.status[boundary] == VertexStatus.BOUNDARY).all()
+    np.testing.assert_allclose(c.gaussian[boundary], -1, atol=0.05)
+
+
+@pytest.mark.parametrize("make", [shapes.irregular_torus, shapes.irregular_ellipsoid])
+def test_far_better_than_the_angle_defect(make):
+    shape = make(1500)
+    plain = surface_curvature((shape.vertices, shape.faces), method="angle_defect").gaussian - shape.gaussian
+    assert relative_error(shape) < 0.2 * np.sqrt(np.mean(plain**2) / np.mean(shape.gaussian**2))
+
+
+def test_positions_are_not_read():
+    mesh = TriangleMesh(TORUS.vertices, TORUS.faces)
+    np.testing.assert_array_equal(
+        surface_curvature(mesh.intrinsic(), method="intrinsic").gaussian, curvature(TORUS).gaussian
+    )
+
+
+def test_total_curvature_is_kept_by_every_step():
+    flow = CurvatureFlow(TriangleMesh(TORUS.vertices, TORUS.faces))
+    once = flow.step(flow.start)
+    total = np.sum(np.abs(flow.areas * flow.start))
+    # The balance is approximate; without it the step misses 2 % of the absolute total.
+    assert abs(np.sum(flow.areas * once)) < 0.005 * total
+    np.testing.assert_allclose(flow.step(np.ones(len(once))), 1, atol=1e-12)
+
+
+def test_orders_reproduce_what_their_polynomials_say():
+    for m, order in ((3, 1), (2, 2), (4, 3)):
+        S = np.array([0.9, 0.5, -0.1])
+        value = sum(c * S**k for k, c in combination(m, order).items())
+        np.testing.assert_allclose(value, 1 - (1 - S**m) ** order, atol=1e-15)
+
+
+# ------------------------------------------------------------------ scale and noise
+
+
+def test_noise_of_lengths_has_the_variance_predicted():
+    mesh = flat_torus(40)
+    t, tau = mesh.topology, 1e-5
+    noise = tau * np.random.default_rng(7).normal(size=t.n_edges)
+    lengths = np.array(mesh.edge_lengths)
+    for h in (t.edge_halfedges, t.partners[t.edge_halfedges]):
+        lengths[h // 3, (h % 3 + 2) % 3] += noise
+    flow = CurvatureFlow(IntrinsicMesh(mesh.faces, lengths))
+    model = LengthNoise.of(flow)
+    values = flow.start
+    for m in range(13):
+        if m in (0, 1, 2, 4, 8, 12):
+            ratio = np.sqrt(np.mean(values**2) / np.mean(tau**2 * model.variance({m: 1.0})))
+            assert 0.7 < ratio < 1.5, m  # Gaussian weights are an idealisation; 1600 values, fewer independent ones
+        values = flow.step(values)
+
+
+def test_spread_covers_the_error_under_noise():
+    for noise in (0.02, 0.05):
+        shape = shapes.noisy(shapes.irregular_torus(2500), noise)
+        c = curvature(shape)
+        within = np.mean(np.abs(c.gaussian - shape.gaussian) < 2 * c.spread)
+        assert within > 0.85
+        assert c.radius.min() > 0
+
+
+def test_radius_fixes_the_scale():
+    c = curvature(TORUS, radius=0.6)
+    assert 0.4 < np.median(c.radius) < 0.8
+    small = curvature(TORUS, radius=1e-9)
+    mesh = TriangleMesh(TORUS.vertices, TORUS.faces)
+    np.testing.assert_array_equal(small.radius, CurvatureFlow(mesh).spacing)  # the star alone
+    with pytest.raises(InvalidInputError, match="positive length"):
+        curvature(TORUS, radius=-1.0)
+
+
+def test_parts_of_the_error_add_up_to_the_spread():
+    mesh = TriangleMesh(TORUS.vertices, TORUS.faces)
+    found = intrinsic_curvature(mesh)
+    c = surface_curvature(mesh, method="intrinsic")
+    np.testing.assert_allclose(found.variance + found.squared_bias, (c.spread / CALIBRATION) ** 2, rtol=1e-12)
+    assert (found.variance >= 0).all() and (found.squared_bias >= 0).all()
+
+
+# ------------------------------------------------------------------ invariance
+
+
+def test_order_orientation_and_unit_do_not_matter():
+    V, F = TORUS.vertices, TORUS.faces
+    rng = np.random.default_rng(7)
+    K = curvature(TORUS).gaussian
+    close = {"rtol": 1e-9, "atol": 1e-9 * np.abs(K).max()}  # rounding of defects, over areas of 0.01
+    p = rng.permutation(len(V))
+    G = np.argsort(p)[F][rng.permutation(len(F))]
+    again = surface_curvature((V[p], np.roll(G[:, ::-1], 1, axis=1)), method="intrinsic").gaussian
+    np.testing.assert_allclose(again, K[p], **close)
+    for scale in (1e-3, 1e3):
+        scaled = surface_curvature((V * scale, F), method="intrinsic").gaussian
+        np.testing.assert_allclose(scaled * scale**2, K, **close)
+
+
+# ------------------------------------------------------------------ faults
+
+
+def test_damage_leaves_a_value_everywhere_else():
+    shape = shapes.irregular_sphere(1000)
+    V, F = shape.vertices.copy(), shape.faces
+    V[10] = np.nan
+    c = surface_curvature((np.vstack([V, [[5.0, 5.0, 5.0]]]), np.vstack([F, F[:1]])), method="intrinsic")
+    assert c.status[10] == VertexStatus.NONFINITE and c.status[-1] == VertexStatus.ISOLATED
+    assert np.isnan(c.gaussian[[10, -1]]).all()
+    ok = c.status == VertexStatus.OK
+    assert ok.sum() > 980
+    np.testing.assert_allclose(c.gaussian[ok], 1, atol=0.1)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [shapes.tetrahedron(), shapes.bow_tie(), shapes.moebius_strip(), shapes.two_components(), shapes.cone(),
+     shapes.soup(shapes.icosphere(1)), shapes.open_patch(100)],
+)  # fmt: skip
+def test_no_shape_is_refused(shape):
+    c = curvature(shape)
+    assert np.isfinite(c.gaussian[c.status == VertexStatus.OK]).all()
+
+
+def test_a_single_triangle_has_no_interior():
+    c = surface_curvature(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), method="intrinsic")
+    assert np.isnan(c.gaussian).all() and (c.status == VertexStatus.BOUNDARY).all()
