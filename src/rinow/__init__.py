@@ -23,6 +23,7 @@ _HOME = {
     "NotAMetricError": "errors",
     "RinowError": "errors",
     "RobinsonCurvature": "embedding.semidependent",
+    "SingularFeatures": "curvature.singular",
     "SpaceForm": "embedding.spaceform",
     "SurfaceCurvature": "curvature.surface",
     "TriangleMesh": "mesh",
@@ -47,6 +48,7 @@ _HOME = {
     "is_semidependent": "embedding.semidependent",
     "robinson_curvature": "embedding.semidependent",
     "semidependent_order": "embedding.semidependent",
+    "singular_features": "curvature.singular",
     "star_curvature": "embedding.star",
 }
 

@@ -5,6 +5,8 @@ from rinow.curvature.curves import curve_curvature as curve_curvature
 from rinow.curvature.haantjes import arc_length as arc_length
 from rinow.curvature.haantjes import haantjes_curvature as haantjes_curvature
 from rinow.curvature.menger import menger_curvature as menger_curvature
+from rinow.curvature.singular import SingularFeatures as SingularFeatures
+from rinow.curvature.singular import singular_features as singular_features
 from rinow.curvature.status import VertexStatus as VertexStatus
 from rinow.curvature.surface import SurfaceCurvature as SurfaceCurvature
 from rinow.curvature.surface import surface_curvature as surface_curvature
