@@ -2,6 +2,8 @@ from rinow import errors as errors
 from rinow._version import __version__ as __version__
 from rinow.curvature.alt import alt_curvature as alt_curvature
 from rinow.curvature.curves import curve_curvature as curve_curvature
+from rinow.curvature.graph import GraphCurvature as GraphCurvature
+from rinow.curvature.graph import graph_curvature as graph_curvature
 from rinow.curvature.haantjes import arc_length as arc_length
 from rinow.curvature.haantjes import haantjes_curvature as haantjes_curvature
 from rinow.curvature.menger import menger_curvature as menger_curvature
