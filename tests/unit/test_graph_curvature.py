@@ -9,6 +9,8 @@ from scipy.sparse import coo_array, csr_array
 
 import rinow
 from naive import graphs as naive
+from rinow.curvature.graph_rows import as_arcs
+from rinow.curvature.graph_wald import wald_at_nodes
 from rinow.errors import InvalidInputError
 
 REGULAR_TETRAHEDRON = 3.6505193604  # curvature in which four points have all distances 1: cos = 1/3 of the angle

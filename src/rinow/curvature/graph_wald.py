@@ -29,9 +29,7 @@ MAD_TO_SIGMA = 1.4826
 PAIRS = np.triu_indices(4, 1)
 
 
-def wald_at_nodes(
-    arcs: Arcs, radius: float | None, nodes: Indices | None = None
-) -> tuple[Floats, Floats, Floats]:
+def wald_at_nodes(arcs: Arcs, radius: float | None, nodes: Indices | None = None) -> tuple[Floats, Floats, Floats]:
     """Curvature, its spread and the radius of the ball at each node.
 
     Parameters
