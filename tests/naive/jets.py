@@ -26,20 +26,6 @@ def two_rings(faces, v):
     return {x for w in ring(faces, v) for x in ring(faces, w)} - {v}
 
 
-def metric_ball(vertices, normals, faces, v, radius, cosine):
-    """Vertices nearer than radius that are joined to v by such vertices, those beyond a fold left out."""
-
-    def accepted(w):
-        near = math.dist(vertices[w], vertices[v]) < radius
-        return near and (w in ring(faces, v) or dot(normals[v], normals[w]) > cosine)
-
-    ball, new = {v}, {v}
-    while new:
-        new = {x for w in new for x in ring(faces, w) if accepted(x)} - ball
-        ball |= new
-    return ball - {v}
-
-
 def local_frame(normal):
     """Two unit vectors orthogonal to the normal and to each other."""
     axis = min(([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]), key=lambda e: abs(dot(e, normal)))
@@ -92,22 +78,9 @@ def places(vertices, normal, members, v, size):
     return [[dot(a, d), dot(b, d), dot(normal, d)] for d in shifts]
 
 
-def jet_curvatures(vertices, normal, members, v, size, order, softening, heights=None):
-    """K and H at v from the members around it, whose heights are moved by `heights`, the last one being v's own."""
-    points = places(vertices, normal, members, v, size)
-    weights, columns, target = design(points, order, softening)
-    if heights is not None:
-        target = [t + w * (h - heights[-1]) / size for t, w, h in zip(target, weights, heights, strict=False)]
+def jet_curvatures(vertices, normal, members, v, size, order, softening):
+    """K and H at v from the members around it."""
+    _, columns, target = design(places(vertices, normal, members, v, size), order, softening)
     c = least_squares(columns, target)
     K, H = curvatures(c[0], c[1], 2 * c[2], c[3], 2 * c[4])
     return K / size**2, H / size
-
-
-def height_variances(vertices, normal, members, v, size, order, softening):
-    """Variance of each height that the scatter of the circles tells, and of v's own (that of the mean weight)."""
-    weights, columns, target = design(places(vertices, normal, members, v, size), order, softening)
-    c = least_squares(columns, target)
-    rest = [t - sum(x * column[i] for x, column in zip(c, columns, strict=True)) for i, t in enumerate(target)]
-    variance = dot(rest, rest) / (len(rest) - len(columns)) * size**2
-    squares = [w * w for w in weights]
-    return [*(variance / w for w in squares), variance * len(squares) / sum(squares)]

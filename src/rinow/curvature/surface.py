@@ -13,6 +13,7 @@ from rinow._arrays import as_floats
 from rinow._executor import Executor
 from rinow.curvature.angle_defect import angle_defect
 from rinow.curvature.estimate import Estimate
+from rinow.curvature.intrinsic import intrinsic
 from rinow.curvature.lifted import lifted
 from rinow.curvature.notes import mesh_notes, weld_notes
 from rinow.curvature.sectional import sectional
@@ -25,8 +26,8 @@ __all__ = ["SurfaceCurvature", "surface_curvature"]
 
 Floats = NDArray[np.float64]
 
-INTRINSIC = {"angle_defect": angle_defect, "wald": wald}
-METHODS = ("auto", "sectional", "lifted", "wald", "angle_defect")
+INTRINSIC = {"angle_defect": angle_defect, "intrinsic": intrinsic, "wald": wald}
+METHODS = ("auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect")
 QUALITIES = ("best", "fast")
 NO_VALUE = (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE)
 SCALARS = ("gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "radius", "spread")
@@ -169,7 +170,7 @@ def surface_curvature(
         n = surface.n_vertices
         surface, index = surface.welded()
         notes = weld_notes(n, surface.n_vertices)
-    estimate = _estimate(surface, chosen, radius, progress, executor)
+    estimate = _estimate(surface, chosen, quality, radius, progress, executor)
     result = _assembled(estimate, vertex_status(surface), chosen)
     notes += mesh_notes(surface, oriented=chosen not in INTRINSIC)
     return replace(_relabelled(_rescaled(result, unit), index), notes=notes)
@@ -193,9 +194,7 @@ def _chosen_method(method: str, quality: str, mesh: TriangleMesh | IntrinsicMesh
             raise InvalidInputError(f"{name} = {value!r} is unknown; choose from {', '.join(allowed)}.")
     if method != "auto":
         return method
-    if isinstance(mesh, IntrinsicMesh):
-        return "wald"
-    return "sectional" if quality == "best" else "lifted"
+    return "wald" if isinstance(mesh, IntrinsicMesh) else "sectional"
 
 
 def _checked_radius(radius: float, method: str) -> float:
@@ -212,12 +211,14 @@ def _checked_radius(radius: float, method: str) -> float:
 def _estimate(
     mesh: TriangleMesh | IntrinsicMesh,
     method: str,
+    quality: str,
     radius: float | None,
     progress: Callable[[int, int], object] | None,
     executor: Executor | None,
 ) -> Estimate:
     if method == "sectional":
-        return sectional(as_triangle_mesh(mesh), radius=radius, progress=progress, executor=executor)
+        options = {"radius": radius, "progress": progress, "executor": executor}
+        return sectional(as_triangle_mesh(mesh), quality=quality, **options)
     estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)

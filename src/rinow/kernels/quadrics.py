@@ -90,20 +90,21 @@ def fit_quadric(points, n, coefficients):
 
 
 @parallel_kernel
-def ring_quadrics(surface, n_blocks, frames):
-    """Write the principal frames of the quadrics fitted to the two rings; nan, and the given normal, without one."""
-    n_vertices = surface.vertices.shape[0]
+def ring_quadrics(rows, surface, n_blocks, frames):
+    """Write the principal frames of the quadrics fitted to two rings of rows[i]; nan, and the given normal, without one."""
+    n_vertices, n = surface.vertices.shape[0], len(rows)
     for block in prange(n_blocks):
         members, marks = np.empty(n_vertices + 1, np.int32), np.zeros(n_vertices, np.int32)
         points, coefficients = np.empty((n_vertices, 3)), np.empty(5)
-        for v in range(n_vertices * block // n_blocks, n_vertices * (block + 1) // n_blocks):
-            n, reach = stencils.two_rings(v, surface, members, marks)
+        for row in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            v = rows[row]
+            size, reach = stencils.two_rings(v, surface, members, marks)
             normal, unit = stencils.normal_at(v, surface), math.sqrt(reach)
             fitted, tangent = False, normal
             if unit > 0.0 and normal != (0.0, 0.0, 0.0):
-                tangent = stencils.local_coordinates(members, n, unit, normal, surface.vertices, points)
-                fitted = fit_quadric(points, n - 1, coefficients)
+                tangent = stencils.local_coordinates(members, size, unit, normal, surface.vertices, points)
+                fitted = fit_quadric(points, size - 1, coefficients)
             if fitted:
-                monge.write_principal_frame(v, coefficients, unit, tangent, normal, frames)
+                monge.write_principal_frame(row, coefficients, unit, tangent, normal, frames)
             else:
-                monge.write_no_frame(v, normal, frames)
+                monge.write_no_frame(row, normal, frames)

@@ -10,9 +10,6 @@ from rinow.kernels._jit import kernel, parallel_kernel, prange
 
 SOFTENING = 0.01
 """Added to squared distances, in squared radii of the stencil: two vertices that nearly coincide tell no curvature."""
-FOLD_COSINE = 0.2
-"""Metric balls stop where the normal turns by more than the angle with this cosine: a graph over the tangent
-plane has no overhang, and a sheet folded back is another part of the surface."""
 QUADRIC_POINTS = 7
 """Fewer points than this leave the tangent plane as it is: their circles are fitted by Euler's formula alone."""
 HUB = 100
@@ -150,31 +147,6 @@ def two_rings(v, surface, members, marks):
 
 
 @kernel
-def metric_ball(v, radius, normal, epoch, surface, members, marks):
-    """Write to `members` the vertices nearer to v than `radius`, reached over such vertices; how many.
-
-    The ball grows along edges only, and beyond the neighbours of v never past a fold: it enters no second sheet.
-    """
-    x, y, z = normal
-    vertices, normals, offsets, neighbours, is_oriented = surface
-    members[0] = v
-    marks[v] = epoch
-    done, n = 0, 1
-    while done < n:
-        for i in range(*spokes(members[done], done == 0, offsets)):
-            w = neighbours[i]
-            if marks[w] != epoch:
-                marks[w] = epoch
-                if squared_distance(vertices, v, w) < radius * radius:
-                    cosine = x * normals[w, 0] + y * normals[w, 1] + z * normals[w, 2]
-                    if done == 0 or cosine > FOLD_COSINE or (not is_oriented and cosine < -FOLD_COSINE):
-                        members[n] = w
-                        n += 1
-        done += 1
-    return n
-
-
-@kernel
 def local_coordinates(members, n, unit, normal, vertices, points):
     """Write to points[i] the tangential coordinates and the height of member i + 1 seen from member 0, over `unit`.
 
@@ -225,3 +197,24 @@ def stretch_to_chords(points, n):
         rho2 = x * x + y * y
         stretch = math.sqrt((rho2 + z * z) / rho2) if rho2 > 0.0 else 0.0
         points[i, 0], points[i, 1] = x * stretch, y * stretch
+
+
+@parallel_kernel
+def count_ranked(offsets, neighbours, index, rank, counts):
+    """Write the number of neighbours of index[i] that have a rank."""
+    for i in prange(len(index)):
+        count = 0
+        for k in range(offsets[index[i]], offsets[index[i] + 1]):
+            count += rank[neighbours[k]] >= 0
+        counts[i] = count
+
+
+@parallel_kernel
+def renumbered_rows(offsets, neighbours, index, rank, new_offsets, out):
+    """Write the ranks of the neighbours of index[i] that have one."""
+    for i in prange(len(index)):
+        m = new_offsets[i]
+        for k in range(offsets[index[i]], offsets[index[i] + 1]):
+            if rank[neighbours[k]] >= 0:
+                out[m] = rank[neighbours[k]]
+                m += 1

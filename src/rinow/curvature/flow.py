@@ -1,0 +1,112 @@
+"""Angle defects, averaged over growing balls of the developed metric by repeating one small local regression."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.kernels import smoothing, stencils
+from rinow.kernels.development import Metric
+from rinow.mesh import IntrinsicMesh, TriangleMesh
+
+__all__ = ["CurvatureFlow"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+N_BLOCKS = 16
+REACH = 2.1
+"""Radius of the small regression in local spacings: the first ring of a regular mesh and a little of the second."""
+NEEDLES = 3.0
+"""Largest ratio of the mean edge to that of equilateral triangles of the same area that counts."""
+
+
+@dataclass(frozen=True)
+class CurvatureFlow:
+    """The powers S^m of a local linear regression S, applied to angle defect over area.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh or IntrinsicMesh
+        The surface; only edge lengths are used.
+    """
+
+    mesh: TriangleMesh | IntrinsicMesh
+
+    @cached_property
+    def has_data(self) -> NDArray[np.bool_]:
+        """(n_vertices,): the vertex is interior, manifold, and has an area."""
+        t = self.mesh.topology
+        return t.vertex_is_manifold & ~t.vertex_is_boundary & (self.mesh.vertex_areas > 0.0)
+
+    @cached_property
+    def areas(self) -> Floats:
+        """(n_vertices,): one third of the area around a vertex with data, else 0."""
+        return np.where(self.has_data, self.mesh.vertex_areas, 0.0)
+
+    @cached_property
+    def metric(self) -> Metric:
+        """The mesh as kernels see it."""
+        t = self.mesh.topology
+        return Metric(
+            t.faces, self.mesh.edge_lengths, self.mesh.corner_angles, t.corner_offsets, t.vertex_corners, t.partners
+        )
+
+    @cached_property
+    def spacing(self) -> Floats:
+        """(n_vertices,): distance of neighbours, averaged around each vertex: see `stencils.local_spacing`."""
+        t, n = self.mesh.topology, self.mesh.n_vertices
+        f, k = np.divmod(t.edge_halfedges, 3)
+        lengths, ends = self.mesh.edge_lengths[f, (k + 2) % 3], t.edges.ravel()
+        sums = np.bincount(ends, np.repeat(lengths, 2), n)
+        edges = self.means(sums / np.maximum(np.bincount(ends, minlength=n), 1), 1)
+        shares = np.where(t.vertex_is_boundary, 0.5, 1.0)
+        areas = self._ring_sums(self._ring_sums(self.mesh.vertex_areas)) / self._ring_sums(self._ring_sums(shares))
+        even = np.sqrt(2.0 / np.sqrt(3.0) * areas)
+        return np.clip(edges, even, NEEDLES * even)
+
+    def _ring_sums(self, values: Floats) -> Floats:
+        sums = np.empty(self.mesh.n_vertices)
+        stencils.ring_sums(values, self.mesh.topology.neighbour_offsets, self.mesh.topology.neighbours, sums)
+        return sums
+
+    @cached_property
+    def _rows(self) -> tuple[Indices, Indices, Floats, Floats]:
+        t, n = self.mesh.topology, self.mesh.n_vertices
+        radii = REACH * self.spacing
+        ball = (radii, self.areas, t.vertex_is_manifold, self.has_data, self.metric, N_BLOCKS)
+        counts, starts = np.empty(n, np.int64), np.zeros(n + 1, np.int64)
+        smoothing.count_rows(*ball, counts)
+        np.cumsum(counts, out=starts[1:])
+        columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
+        smoothing.regression_rows(*ball, starts, columns, values, variances)
+        return starts, columns, values, variances
+
+    @property
+    def step_variances(self) -> Floats:
+        """(n_vertices,): mean square along an axis of the distance that one step averages over; nan without data."""
+        return self._rows[3]
+
+    @cached_property
+    def start(self) -> Floats:
+        """(n_vertices,): angle defect over area, 0 without data."""
+        return np.divide(self.mesh.vertex_angle_defects, self.areas, out=np.zeros(len(self.areas)), where=self.has_data)
+
+    def step(self, values: Floats) -> Floats:
+        """The values after one more regression; nan for a vertex without data around it."""
+        out = np.empty_like(values)
+        smoothing.apply_rows(*self._rows[:3], values, out)
+        return out
+
+    def means(self, values: Floats, passes: int) -> Floats:
+        """Means over the ring of each vertex, repeated; of finite values, column by column."""
+        t = self.mesh.topology
+        current = values.reshape(len(values), -1).copy()
+        other = np.empty_like(current)
+        for _ in range(passes):
+            smoothing.ring_means(current, t.neighbour_offsets, t.neighbours, other)
+            current, other = other, current
+        return current.reshape(values.shape)

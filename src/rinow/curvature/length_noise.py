@@ -1,0 +1,65 @@
+"""How errors of edge lengths, independent of each other, reach the averages of angle defects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.curvature.flow import CurvatureFlow
+from rinow.kernels import smoothing
+
+__all__ = ["LengthNoise"]
+
+Floats = NDArray[np.float64]
+
+GAUSSIAN = 3.0 / (16.0 * np.pi)
+"""Integral of the squared second derivative across any line of a Gaussian density of variance 1 in the plane."""
+
+
+@dataclass(frozen=True)
+class LengthNoise:
+    r"""Variances of combinations of powers S^m K for edge lengths of standard deviation 1.
+
+    The weights c of the defects in S^m K are nearly those of a Gaussian of variance :math:`s^2 = m\sigma^2` along each
+    axis.  An error of a length changes the sum of defects by the jump of the slope of c across that edge, which is the
+    second derivative of c times half the heights over the edge, whence the variance
+    :math:`\rho \, 3 / (16\pi s^6)` with the sum ρ of the squares of half heights per area.  A variance
+    :math:`s_0^2` is added to :math:`s^2` that makes it right for m = 0 as well, where the sum of squared derivatives of
+    the defect is known.
+
+    Attributes
+    ----------
+    density, start, step : (n_vertices,) ndarray of float
+        ρ (no unit), :math:`s_0^2` and :math:`\sigma^2`, in length².
+    """
+
+    density: Floats
+    start: Floats
+    step: Floats
+    sensitivity: Floats
+
+    @classmethod
+    def of(cls, flow: CurvatureFlow) -> LengthNoise:
+        """The model of a mesh."""
+        n = flow.mesh.n_vertices
+        squares, density = np.empty(n), np.empty(n)
+        smoothing.defect_sensitivities(flow.metric, flow.mesh.face_areas, squares, density)
+        columns = np.column_stack([np.where(flow.has_data, density, np.nan), np.where(flow.has_data, flow.step_variances, np.nan)])
+        density, step = flow.means(columns, 4).T
+        with np.errstate(all="ignore"):
+            start = (GAUSSIAN * density * flow.areas**2 / squares) ** (1.0 / 3.0)
+        start[~(flow.has_data & np.isfinite(start))] = 0.0
+        return cls(np.ascontiguousarray(density), start, np.ascontiguousarray(step), squares)
+
+    def variance(self, combination: Mapping[int, float]) -> Floats:
+        """(n_vertices,): variance of the sum of coefficient times S^m K over the items m: coefficient."""
+        items = list(combination.items())
+        total = np.zeros(len(self.start))
+        for i, (m, a) in enumerate(items):
+            for k, b in items[: i + 1]:
+                scale = 0.5 * (m + k) * self.step + self.start
+                total += (1.0 if k == m else 2.0) * a * b / (scale * scale * scale)
+        return GAUSSIAN * self.density * total

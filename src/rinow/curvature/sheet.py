@@ -1,0 +1,70 @@
+"""A mesh as the fits of patches see it: the vertices that have faces, in an order that keeps neighbours together."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.curvature.stencils import local_spacing, stencil_surface
+from rinow.kernels import balls, stencils
+from rinow.mesh import TriangleMesh
+
+__all__ = ["patch_sheet"]
+
+
+def patch_sheet(
+    mesh: TriangleMesh, barriers: NDArray[np.bool_] | None = None
+) -> tuple[balls.Sheet, NDArray[np.intp]]:
+    """The sheet, and the index in the mesh of each of its vertices.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    barriers : (n_vertices,) ndarray of bool, optional
+        Vertices that balls reach but do not grow beyond, such as those on crease edges.
+
+    Notes
+    -----
+    The order of the vertices keeps neighbours near each other in memory and has no influence on any value beyond
+    rounding.
+    """
+    t = mesh.topology
+    surface = stencil_surface(mesh)
+    normals = np.empty_like(surface.normals)
+    stencils.ring_directions(surface.normals, not t.is_orientable, t.neighbour_offsets, t.neighbours, normals)
+    spacing = local_spacing(mesh)
+    index = np.flatnonzero(t.vertex_is_used & (spacing > 0.0))
+    index = index[np.argsort(_morton_codes(mesh.vertices[index]), kind="stable")]
+    rank = np.full(mesh.n_vertices, -1, np.int32)
+    rank[index] = np.arange(len(index), dtype=np.int32)
+    offsets, neighbours = _rows(t.neighbour_offsets, t.neighbours, index, rank)
+    is_barrier = np.zeros(len(index), np.bool_) if barriers is None else barriers[index]
+    surface = (mesh.vertices[index], normals[index], offsets, neighbours, spacing[index], is_barrier)
+    return balls.Sheet(*surface, t.is_orientable), index
+
+
+def _rows(
+    offsets: NDArray[np.intp], neighbours: NDArray[np.intp], index: NDArray[np.intp], rank: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Compressed rows of the neighbours of index[i], renumbered; neighbours without a rank are left out."""
+    new_offsets = np.zeros(len(index) + 1, np.int32)
+    stencils.count_ranked(offsets, neighbours, index, rank, new_offsets[1:])
+    np.cumsum(new_offsets, out=new_offsets)
+    rows = np.empty(new_offsets[-1], np.int32)
+    stencils.renumbered_rows(offsets, neighbours, index, rank, new_offsets, rows)
+    return new_offsets, rows
+
+
+def _morton_codes(points: NDArray[np.float64]) -> NDArray[np.uint32]:
+    """Codes of the cells of a grid of 1024³ along a curve through neighbouring cells."""
+    low = points.min(axis=0, initial=np.inf)
+    size = max(float((points - low).max(initial=0.0)), np.finfo(float).tiny)
+    cells = np.minimum((points - low) / size * 1024, 1023).astype(np.uint32)
+    codes = np.zeros(len(points), np.uint32)
+    for axis in range(3):
+        x = cells[:, axis]
+        for shift, mask in ((16, 0x030000FF), (8, 0x0300F00F), (4, 0x030C30C3), (2, 0x09249249)):
+            x = (x | (x << np.uint32(shift))) & np.uint32(mask)
+        codes |= x << np.uint32(axis)
+    return codes

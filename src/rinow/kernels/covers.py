@@ -1,0 +1,141 @@
+"""Centres that cover a surface, chosen so that the choice is local and knows neither axes nor numbering."""
+
+import math
+
+import numpy as np
+
+from rinow.kernels._jit import kernel, parallel_kernel, prange
+
+QUANTA = 2.0**26
+"""Steps in a shape ratio of 1: far above rounding, so that motions change no key, and below chance coincidence."""
+
+
+@kernel
+def mixed(x):
+    """A hash of a 64-bit number (the finaliser of splitmix64)."""
+    x = np.uint64(x)
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return x ^ (x >> np.uint64(31))
+
+
+@parallel_kernel
+def shape_keys(vertices, offsets, neighbours, out):
+    """Write a hash of the shape of each star: equal for congruent and similar stars, else as good as random."""
+    for v in prange(len(offsets) - 1):
+        total = squares = 0.0
+        for i in range(offsets[v], offsets[v + 1]):
+            w = neighbours[i]
+            x, y, z = vertices[w, 0] - vertices[v, 0], vertices[w, 1] - vertices[v, 1], vertices[w, 2] - vertices[v, 2]
+            d2 = x * x + y * y + z * z
+            squares += d2
+            total += math.sqrt(d2)
+        ratio = squares / (total * total) if total > 0.0 else 0.0
+        out[v] = np.uint32(mixed(np.uint64(ratio * QUANTA + 0.37)) >> np.uint64(32))
+
+
+@kernel
+def disc(v, radius, epoch, vertices, offsets, neighbours, is_barrier, marks, members):
+    """Write the vertices within a distance of v, reached over such vertices; how many."""
+    members[0] = v
+    marks[v] = epoch
+    done, n = 0, 1
+    x, y, z = vertices[v, 0], vertices[v, 1], vertices[v, 2]
+    while done < n:
+        p = members[done]
+        if done == 0 or not is_barrier[p]:
+            for i in range(offsets[p], offsets[p + 1]):
+                q = neighbours[i]
+                if marks[q] != epoch:
+                    marks[q] = epoch
+                    a, b, c = vertices[q, 0] - x, vertices[q, 1] - y, vertices[q, 2] - z
+                    if a * a + b * b + c * c < radius * radius and n < len(members):
+                        members[n] = q
+                        n += 1
+        done += 1
+    return n
+
+
+@kernel
+def cover(candidates, radii, core, sheet, centres, sizes):
+    """Write each candidate that lies in the disc of no earlier one, and the size of `core` times its disc; how many."""
+    n = len(sheet.vertices)
+    marks, members, is_covered = np.zeros(n, np.int32), np.empty(n, np.int32), np.zeros(n, np.bool_)
+    count = 0
+    for v in candidates:
+        if is_covered[v]:
+            continue
+        size = disc(v, core * radii[v], count + 1, sheet.vertices, sheet.offsets, sheet.neighbours, sheet.is_barrier, marks, members)
+        far = radii[v] * radii[v]
+        for i in range(size):
+            q = members[i]
+            x = sheet.vertices[q, 0] - sheet.vertices[v, 0]
+            y = sheet.vertices[q, 1] - sheet.vertices[v, 1]
+            z = sheet.vertices[q, 2] - sheet.vertices[v, 2]
+            if x * x + y * y + z * z < far:
+                is_covered[q] = True
+        centres[count], sizes[count] = v, size
+        count += 1
+    return count
+
+
+@parallel_kernel
+def link(places, sources, radii, counts, starts, is_counting, n_blocks, sheet, links):
+    """Numbers of the targets in the disc of each source: their counts, or from starts[i] on their numbers in `links`.
+
+    places[v] is the number of the target at vertex v, or -1.
+    """
+    n, size = len(sources), len(sheet.vertices)
+    for block in prange(n_blocks):
+        marks, members = np.zeros(size, np.int32), np.empty(size, np.int32)
+        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            m = disc(
+                sources[i], radii[i], i + 1, sheet.vertices, sheet.offsets, sheet.neighbours, sheet.is_barrier, marks, members
+            )
+            k = 0
+            for j in range(m):
+                target = places[members[j]]
+                if target >= 0:
+                    if not is_counting:
+                        links[starts[i] + k] = target
+                    k += 1
+            if is_counting:
+                counts[i] = k
+
+
+@parallel_kernel
+def windows(starts, samples, radius, order, noise, low, high, top, sigma2):
+    """Write the range of radii and the highest order of the samples near each vertex, and the noise between them."""
+    for v in prange(len(starts) - 1):
+        low[v], high[v], top[v] = 127, -1, 0  # no sample
+        total, count = 0.0, 0
+        for i in range(starts[v], starts[v + 1]):
+            s = samples[i]
+            if radius[s] < 0:
+                continue
+            low[v], high[v] = min(low[v], radius[s]), max(high[v], radius[s])
+            top[v] = max(top[v], order[s])
+            total += math.log(max(noise[s], 1e-300))
+            count += 1
+        sigma2[v] = math.exp(total / count) if count else 0.0
+
+
+@parallel_kernel
+def choices(vertices, starts, samples, logs, radius, order, risk):
+    """Write the radius and order of the least mean logarithmic risk among the samples near each vertex; -1 without."""
+    for i in prange(len(vertices)):
+        v = vertices[i]
+        best = np.inf
+        radius[i], order[i], risk[i] = -1, 0, np.inf
+        for j in range(logs.shape[1]):
+            for d in range(logs.shape[2]):
+                total, count = 0.0, 0
+                for k in range(starts[v], starts[v + 1]):
+                    x = logs[samples[k], j, d]
+                    if not math.isnan(x):
+                        total += x
+                        count += 1
+                missing = starts[v + 1] - starts[v] - count
+                if count > missing and total / count + missing < best:
+                    best = total / count + missing
+                    radius[i], order[i], risk[i] = j, d + 2, math.exp(total / count)

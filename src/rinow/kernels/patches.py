@@ -1,0 +1,280 @@
+"""One fit about each centre: the frame of its osculating torus, and the curvature it gives the vertices of its core."""
+
+import math
+
+import numpy as np
+
+from rinow.kernels import balls, monge, nested_fits, stencils
+from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels.nested_fits import MAX_ORDER, TERMS, U_POWERS, V_POWERS
+from rinow.kernels.osculating_torus import offset_forms, torus_frame
+from rinow.kernels.patch_fits import STEEP, curvature_and_gradients, forms_at_centre
+
+STEEP_CORE = 0.6
+"""Largest squared slope of a fit at a vertex of its core."""
+FALLEN = 1e-6
+"""Weight of a fit whose order had to be lowered."""
+SYMMETRIC = 1.5
+"""Largest ratio of variances of stencils that count as symmetric."""
+N_VALUES = 15
+"""Weight; weighted K, H, risk, radius; six entries of the second fundamental form; normal; order."""
+
+
+@kernel
+def shape_in_frame(g11, g12, g22, l, m, n, volume):
+    """Entries of the shape operator for the first tangent and the direction across it."""
+    e = math.sqrt(g11)
+    a, b = g12 / e, volume / e
+    s11 = l / g11
+    s12 = (m / e - a * s11) / b
+    return s11, s12, (n - a * a * s11 - 2.0 * a * b * s12) / (b * b)
+
+
+@kernel
+def principal(s11, s12, s22):
+    """Eigenvalues of a symmetric matrix, the one of larger modulus last, and cosine and sine of the first direction."""
+    mean, half = 0.5 * (s11 + s22), 0.5 * (s11 - s22)
+    r = math.hypot(half, s12)
+    cos, sin = (r + half, s12) if half >= 0.0 else (s12, r - half)
+    length = math.hypot(cos, sin)
+    cos, sin = (cos / length, sin / length) if length > 0.0 else (1.0, 0.0)
+    if mean > 0.0:  # the first direction belongs to mean + r
+        return mean - r, mean + r, -sin, cos
+    return mean + r, mean - r, cos, sin
+
+
+@kernel
+def combine(frame, x, y, z, out, first):
+    """Write x d1 + y d2 + z n, of unit length, to out[first..first + 2]."""
+    length = math.sqrt(x * x + y * y + z * z)
+    for k in range(3):
+        out[first + k] = (x * frame[3 + k] + y * frame[6 + k] + z * frame[k]) / length
+
+
+@kernel
+def write_frame(jet, spacing, frame, out):
+    """Write normal, principal directions and curvatures of a fit over the frame's torus; at a steep one only the normal."""
+    k1, k2 = frame[9] * spacing, frame[10] * spacing
+    g11, g12, g22, l, m, n, volume = forms_at_centre(jet, k1, k2)
+    e1, e2 = 1.0 - k1 * jet[0], 1.0 - k2 * jet[0]
+    nx, ny, nz = -jet[1] * e2, -e1 * jet[2], e1 * e2
+    tx, tz = e1, jet[1]
+    cx, cy, cz = ny * tz, nz * tx - nx * tz, -ny * tx  # normal x first tangent
+    t, c = math.sqrt(tx * tx + tz * tz), math.sqrt(cx * cx + cy * cy + cz * cz)
+    first, second, cos, sin = principal(*shape_in_frame(g11, g12, g22, l, m, n, volume))
+    combine(frame, nx, ny, nz, out, 0)
+    p, q, r, s = cos / t, sin / c, -sin / t, cos / c
+    combine(frame, p * tx + q * cx, q * cy, p * tz + q * cz, out, 3)
+    combine(frame, r * tx + s * cx, s * cy, r * tz + s * cz, out, 6)
+    flat = jet[1] * jet[1] + jet[2] * jet[2] > STEEP
+    out[9], out[10] = (0.0, 0.0) if flat else (first / spacing, second / spacing)
+
+
+@kernel
+def fit_one(v, frame, reach, order, epoch, sheet, work, fit):
+    """Grow one ball and fit one order, or the highest below it; points and order, below 2 without a fit."""
+    size = balls.grow(v, frame, reach, epoch, sheet, work)
+    top = nested_fits.highest_order(size, order)
+    if top < 2:
+        return size, top
+    reaches = np.array([reach])
+    nested_fits.add_moments(work.points, size, reaches, top, fit)
+    return size, nested_fits.fit_orders(0, reach, top, fit)
+
+
+@parallel_kernel
+def pilot_frames(centres, frames, reaches, orders, most, n_blocks, sheet, out):
+    """Write the frame of the osculating torus of one fit about each centre over its given frame, which stays without."""
+    n = len(centres)
+    for block in prange(n_blocks):
+        work, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(1)
+        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            out[i] = frames[i]
+            if orders[i] < 2:
+                continue
+            _, order = fit_one(centres[i], frames[i], reaches[i], orders[i], i + 1, sheet, work, fit)
+            if order >= 2:
+                write_frame(fit.jets[order], sheet.spacing[centres[i]], frames[i], out[i])
+
+
+@kernel
+def polynomial(coefficients, order, reach, u, v):
+    """Value, first and second derivatives at (u, v) of a polynomial in coordinates over `reach`."""
+    f = f1 = f2 = f11 = f12 = f22 = 0.0
+    x, y = u / reach, v / reach
+    px, py = np.ones(MAX_ORDER + 1), np.ones(MAX_ORDER + 1)
+    for k in range(1, order + 1):
+        px[k], py[k] = px[k - 1] * x, py[k - 1] * y
+    for i in range(TERMS[order]):
+        a, b, c = U_POWERS[i], V_POWERS[i], coefficients[i]
+        f += c * px[a] * py[b]
+        if a > 0:
+            f1 += c * a * px[a - 1] * py[b]
+        if b > 0:
+            f2 += c * b * px[a] * py[b - 1]
+        if a > 1:
+            f11 += c * a * (a - 1) * px[a - 2] * py[b]
+        if a > 0 and b > 0:
+            f12 += c * a * b * px[a - 1] * py[b - 1]
+        if b > 1:
+            f22 += c * b * (b - 1) * px[a] * py[b - 2]
+    s = 1.0 / (reach * reach)
+    return f, f1 / reach, f2 / reach, f11 * s, f12 * s, f22 * s
+
+
+@kernel
+def write_values(u, v, jet, frame, spacing, out):
+    """Write curvatures, second fundamental form and normal at a point of a patch; whether the patch is not steep there."""
+    f, f1, f2, f11, f12, f22 = jet
+    if not f1 * f1 + f2 * f2 <= STEEP_CORE:
+        return False
+    k1, k2 = frame[9] * spacing, frame[10] * spacing
+    g11, g12, g22, l, m, n, volume = offset_forms(v, k1, k2, f, f1, f2, f11, f12, f22)
+    out[1] = (l * n - m * m) / (volume * volume) / (spacing * spacing)
+    out[2] = 0.5 * (g22 * l - 2.0 * g12 * m + g11 * n) / (volume * volume) / spacing
+    a, b, normal = torus_frame(math.cos(k1 * u), math.sin(k1 * u), math.cos(k2 * v), math.sin(k2 * v))
+    e1, e2 = math.sqrt(max(g11 - f1 * f1, 0.0)), 1.0 - k2 * f
+    s11, s12, s22 = shape_in_frame(g11, g12, g22, l, m, n, volume)
+    first, second, cos, sin = principal(s11, s12, s22)
+    nx, ny, nz = -f1 * e2, -e1 * f2, e1 * e2
+    cx, cy, cz = ny * f1, nz * e1 - nx * f1, -ny * e1
+    t, c = math.sqrt(g11), math.sqrt(cx * cx + cy * cy + cz * cz)
+    p, q = cos / t, sin / c
+    x1, y1, z1 = p * e1 + q * cx, q * cy, p * f1 + q * cz
+    p, q = -sin / t, cos / c
+    x2, y2, z2 = p * e1 + q * cx, q * cy, p * f1 + q * cz
+    one, two, up = np.empty(3), np.empty(3), np.empty(3)
+    for k in range(3):
+        ek = a[0] * frame[3 + k] + a[1] * frame[6 + k] + a[2] * frame[k]
+        fk = b[0] * frame[3 + k] + b[1] * frame[6 + k] + b[2] * frame[k]
+        nk = normal[0] * frame[3 + k] + normal[1] * frame[6 + k] + normal[2] * frame[k]
+        one[k], two[k] = x1 * ek + y1 * fk + z1 * nk, x2 * ek + y2 * fk + z2 * nk
+        up[k] = (nx * ek + ny * fk + nz * nk) / volume
+    i = 5
+    for j in range(3):
+        for k in range(j, 3):
+            out[i] = (first * one[j] * one[k] + second * two[j] * two[k]) / spacing
+            i += 1
+    out[11], out[12], out[13] = up
+    return True
+
+
+@kernel
+def write_core(core, risk, power, order, wanted, frame, reach, size, spacing, sheet, work, coefficients, start, stop, bias, vertices, values):
+    """Write the weighted values of one patch at the vertices nearer than `core` spacings to its centre; how many."""
+    k = start
+    members, points = work.members, work.points
+    centre = members[0]
+    for j in range(size):
+        u, v, q = points[0, j], points[1, j], members[j]
+        x = sheet.vertices[q, 0] - sheet.vertices[centre, 0]
+        y = sheet.vertices[q, 1] - sheet.vertices[centre, 1]
+        z = sheet.vertices[q, 2] - sheet.vertices[centre, 2]
+        s = (u * u + v * v) / (core * core)
+        if s >= 1.0 or k == stop or x * x + y * y + z * z >= (core * spacing) ** 2:
+            continue
+        out = values[k]
+        if not write_values(u, v, polynomial(coefficients, order, reach, u, v), frame, spacing, out):
+            continue
+        weight = (1.0 - s) ** 2 * risk ** (-power) * (1.0 if order >= wanted else FALLEN)
+        sign = 1.0
+        if not sheet.is_oriented:
+            dot = out[11] * sheet.normals[q, 0] + out[12] * sheet.normals[q, 1] + out[13] * sheet.normals[q, 2]
+            sign = 1.0 if dot >= 0.0 else -1.0
+        out[1] -= bias
+        out[3], out[4], out[14] = risk, reach * spacing, order
+        out[0] = weight
+        for m in range(1, N_VALUES):
+            out[m] *= weight * (sign if m == 2 or 5 <= m < 14 else 1.0)
+        vertices[k] = q
+        k += 1
+    for j in range(k, stop):
+        vertices[j] = -1
+
+
+@kernel
+def is_even_handed(lower, upper):
+    """Whether an odd order has nearly the variance of the even one below it, as on stencils with points all around.
+
+    There both agree at the centre, but only the odd one follows the first derivatives of curvature away from it.
+    """
+    return upper[0] + upper[3] + upper[5] < SYMMETRIC * (lower[0] + lower[3] + lower[5])
+
+
+@parallel_kernel
+def patch_values(centres, frames, reaches, orders, cores, sigma2, risks, power, starts, most, n_blocks, sheet, vertices, values):
+    """Write from starts[i] on the vertices (-1 for none) and weighted values of the patch about centres[i]."""
+    n = len(centres)
+    for block in prange(n_blocks):
+        work, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(1)
+        coefficients = np.empty(TERMS[MAX_ORDER])
+        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            start, stop = starts[i], starts[i + 1]
+            vertices[start:stop] = -1
+            if orders[i] < 2:
+                continue
+            v, frame = centres[i], frames[i]
+            spacing = sheet.spacing[v]
+            even = orders[i] % 2 == 0 and orders[i] < MAX_ORDER
+            size, top = fit_one(v, frame, reaches[i], orders[i] + even, i + 1, sheet, work, fit)
+            if top < 2:
+                continue
+            order = min(top, orders[i])
+            if even and top > order and is_even_handed(fit.covariances[order], fit.covariances[top]):
+                order = top
+            nested_fits.coefficients(order, nested_fits.highest_order(size, orders[i] + even), fit, coefficients)
+            factor = curvature_and_gradients(fit.jets[order], frame[9] * spacing, frame[10] * spacing)[4]
+            c = fit.covariances[order]
+            bias = sigma2[i] / spacing**4 * factor * (c[2] - c[3])
+            write_core(
+                cores[i], risks[i], power, order, orders[i], frame, reaches[i], size, spacing, sheet, work,
+                coefficients, start, stop, bias, vertices, values,
+            )  # fmt: skip
+
+
+@kernel
+def add_values(vertices, values, totals):
+    """Add the values of patches to the totals of their vertices."""
+    for i in range(len(vertices)):
+        v = vertices[i]
+        if v >= 0:
+            for k in range(totals.shape[1]):
+                totals[v, k] += values[i, k]
+
+
+@parallel_kernel
+def mean_values(totals, normals, out, direction1, direction2):
+    """Write K, H, risk, radius, order, and the principal directions of the weighted means, k1 >= k2; nan without.
+
+    Curvatures change their sign here: positive where the surface bends away from its normal.
+    """
+    for v in prange(len(totals)):
+        total, weight = totals[v], totals[v, 0]
+        if not weight > 0.0:
+            out[v, :] = np.nan
+            direction1[v, :], direction2[v, :] = np.nan, np.nan
+            continue
+        out[v, 0], out[v, 1] = total[1] / weight, -total[2] / weight
+        out[v, 2], out[v, 3], out[v, 4] = total[3] / weight, total[4] / weight, total[14] / weight
+        n = (total[11], total[12], total[13])
+        length = stencils.norm(n)
+        if not length > 0.0:
+            n, length = (normals[v, 0], normals[v, 1], normals[v, 2]), 1.0
+        n = (n[0] / length, n[1] / length, n[2] / length)
+        t = monge.some_tangent(n)
+        b = monge.cross(n, t)
+        s11 = s12 = s22 = 0.0
+        k = 5
+        for i in range(3):
+            for j in range(i, 3):
+                x = -total[k] if i == j else -2.0 * total[k]
+                s11, s22 = s11 + x * t[i] * t[j], s22 + x * b[i] * b[j]
+                s12 += 0.5 * x * (t[i] * b[j] + t[j] * b[i])
+                k += 1
+        half = 0.5 * (s11 - s22)
+        r = math.hypot(half, s12)
+        cos, sin = (r + half, s12) if half >= 0.0 else (s12, r - half)
+        length = math.hypot(cos, sin)
+        cos, sin = (cos / length, sin / length) if length > 0.0 else (1.0, 0.0)
+        for i in range(3):
+            direction1[v, i], direction2[v, i] = cos * t[i] + sin * b[i], cos * b[i] - sin * t[i]

@@ -1,0 +1,113 @@
+"""Choice of order and radius at centres: squared bias plus variance, averaged over the centres around."""
+
+import math
+
+import numpy as np
+
+from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels.nested_fits import N_ORDERS
+from rinow.kernels.patch_fits import N_BIASES
+
+KAPPA = 0.2
+"""The squared bias is at least this share of the variance of the comparison that shows it."""
+DECAY = 10.0
+"""The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
+UNSEEN = 1.0
+"""Bias, over the inverse square of the radius, of a quadric where nothing is there to compare it with."""
+ROUNDING = 1e-13
+"""Error of curvature by rounding, over the inverse square of the spacing."""
+
+
+@parallel_kernel
+def average_rows(values, spacing, power, rows, low, high, links, starts, out):
+    """Write the mean of each entry over a centre and those linked to it, at the same radius; nan is left out.
+
+    An entry is in the unit spacing^-power of its own centre, and so is the mean.
+    """
+    for i in prange(len(low)):
+        width = values.shape[1]
+        for k in range(high[i] - low[i] + 1):
+            for c in range(width):
+                total, count = 0.0, 0
+                for m in range(starts[i], starts[i + 1]):
+                    n = links[m]
+                    j = low[i] + k - low[n]
+                    if 0 <= j <= high[n] - low[n]:
+                        x = values[rows[n] + j, c]
+                        if not math.isnan(x):
+                            total += x * (spacing[i] / spacing[n]) ** power
+                            count += 1
+                out[rows[i] + k, c] = total / count if count else np.nan
+
+
+@kernel
+def squared_biases(t, ratio, upper, tables, bias, bias_variance, out):
+    """Write the squared bias of each order; where the order two above is missing, from the next larger ball `upper`.
+
+    A truncation error of order d is at most r^(d+1) times the square root of points times variance.
+    """
+    for i in range(N_BIASES):
+        own = not math.isnan(tables.variance[t, i + 2]) and not math.isnan(bias[t, i])
+        if own:
+            out[i] = max(bias[t, i], KAPPA * bias_variance[t, i])
+        elif upper >= 0 and tables.leverage[upper, i] > 0.0:
+            out[i] *= ratio ** (2 * (i + 3)) * tables.leverage[t, i] / tables.leverage[upper, i]
+        else:
+            out[i] = np.nan
+    for i in range(N_BIASES, N_ORDERS):
+        lower = out[i - 4]
+        out[i] = out[i - 2] * min(1.0, DECAY * out[i - 2] / lower) if lower > 0.0 else out[i - 2]
+
+
+@parallel_kernel
+def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance, radius, order, risk, logs):
+    """Write the radius index (-1 for none), order and value of the least risk of each centre; logs (n, R, 7) unless empty."""
+    for i in prange(len(low)):
+        biases = np.empty(N_ORDERS)
+        biases[:] = np.nan
+        best, best_radius, best_order, upper, last, fallback = np.inf, -1, 0, -1, 0, -1
+        for k in range(high[i] - low[i], -1, -1):
+            t = rows[i] + k
+            if math.isnan(tables.variance[t, 0]):
+                continue
+            ratio = reaches[low[i] + k] / reaches[last] if upper >= 0 else 1.0
+            squared_biases(t, ratio, upper, tables, bias, bias_variance, biases)
+            upper, last = t, low[i] + k
+            for d in range(N_ORDERS):
+                if math.isnan(tables.variance[t, d]) or math.isnan(biases[d]):
+                    continue
+                value = max(max(tables.variance[t, d], variance[t, d]) + biases[d], ROUNDING * ROUNDING)
+                if len(logs):
+                    logs[i, low[i] + k, d] = math.log(value)
+                if value <= best:  # below the error of rounding the smallest ball and the highest order
+                    best, best_radius, best_order = value, low[i] + k, d + 2
+            if best_order == 0:
+                fallback = low[i] + k
+        if best_order == 0 and fallback >= 0:
+            t = rows[i] + fallback - low[i]
+            guess = UNSEEN / reaches[fallback] ** 2
+            best_radius, best_order, best = fallback, 2, tables.variance[t, 0] + guess * guess
+        radius[i], order[i], risk[i] = best_radius, best_order, best
+
+
+@parallel_kernel
+def disc_shrinkage(starts, members, gaussian, risk, out):
+    """Write the positive-part shrinkage 1 - n / sum(K^2 / risk) over the n values of each disc; 1 without any."""
+    for i in prange(len(starts) - 1):
+        total, count = 0.0, 0
+        for k in range(starts[i], starts[i + 1]):
+            x = gaussian[members[k]]
+            if not math.isnan(x):
+                total += x * x / risk[members[k]]
+                count += 1
+        out[i] = max(0.0, 1.0 - count / total) if total > 0.0 else 1.0
+
+
+@parallel_kernel
+def vertex_means(starts, near, values, out):
+    """Write the mean of the values of the samples near each vertex; 1 without."""
+    for v in prange(len(starts) - 1):
+        total = 0.0
+        for k in range(starts[v], starts[v + 1]):
+            total += values[near[k]]
+        out[v] = total / (starts[v + 1] - starts[v]) if starts[v + 1] > starts[v] else 1.0

@@ -1,0 +1,189 @@
+"""Local linear regression of curvature over balls of the developed metric, as rows of a sparse matrix."""
+
+import math
+
+import numpy as np
+
+from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels.development import develop, fan_angle
+
+FULL_TURN = 2.0 * math.pi
+CAPACITY = 512
+"""Most vertices of one development."""
+ONE_SIDED = 0.2
+"""No slope is taken out where the square of the distance from the centre of the data exceeds this many of their
+variances: extrapolation there, repeated, would keep the noise of the boundary for ever."""
+FLATTEST = 1e-3
+"""Where the spread of the data across is below this share of that along, it determines no slope across."""
+
+
+@kernel
+def weighted_moments(n, radius, areas, members, points, weights):
+    """Write the weights area (1 - (|u|/radius)²)³, 0 without data; their sum, means and covariances."""
+    total = mx = my = 0.0
+    for m in range(n):
+        x, y = points[m, 0], points[m, 1]
+        s = 1.0 - (x * x + y * y) / (radius * radius)
+        weights[m] = areas[members[m]] * s * s * s if s > 0.0 else 0.0
+        total += weights[m]
+        mx += weights[m] * x
+        my += weights[m] * y
+    if total == 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    mx, my = mx / total, my / total
+    xx = xy = yy = 0.0
+    for m in range(n):
+        x, y = points[m, 0] - mx, points[m, 1] - my
+        xx += weights[m] * x * x
+        xy += weights[m] * x * y
+        yy += weights[m] * y * y
+    return total, mx, my, xx / total, xy / total, yy / total
+
+
+@kernel
+def slope_terms(mx, my, xx, xy, yy):
+    """The vector C⁻¹ m of covariances C and means m, without the axis along which C is too small."""
+    half, difference = 0.5 * (xx + yy), 0.5 * (xx - yy)
+    root = math.sqrt(difference * difference + xy * xy)
+    large, small = half + root, half - root
+    if not large > 0.0:
+        return 0.0, 0.0
+    if small > FLATTEST * large:
+        det = xx * yy - xy * xy
+        return (yy * mx - xy * my) / det, (xx * my - xy * mx) / det
+    angle = 0.5 * math.atan2(xy, difference)
+    cos, sin = math.cos(angle), math.sin(angle)
+    along = (cos * mx + sin * my) / large
+    return along * cos, along * sin
+
+
+@kernel
+def develop_ball(v, radius, is_closed, metric, members, slots, points, counts):
+    """`develop`, angles of a closed star scaled to 2π; 0 members without a face."""
+    if metric.offsets[v + 1] == metric.offsets[v]:
+        return 0
+    total = fan_angle(v, metric)
+    stretch = FULL_TURN / total if is_closed and total > 0.0 else 1.0
+    return develop(v, radius, stretch, metric, members, slots, points, counts)
+
+
+@parallel_kernel
+def count_rows(radii, areas, is_fan, is_closed, metric, n_blocks, counts_out):
+    """Write the number of data with a weight around each vertex."""
+    n = radii.shape[0]
+    for block in prange(n_blocks):
+        members, slots = np.empty(CAPACITY, np.int64), np.zeros(n, np.int32)
+        points, counts = np.empty((CAPACITY, 2)), np.empty(CAPACITY, np.int64)
+        for v in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            counts_out[v] = 0
+            if is_fan[v]:
+                k = develop_ball(v, radii[v], is_closed[v], metric, members, slots, points, counts)
+                for m in range(k):
+                    if areas[members[m]] > 0.0 and points[m, 0] ** 2 + points[m, 1] ** 2 < radii[v] ** 2:
+                        counts_out[v] += 1
+
+
+@parallel_kernel
+def regression_rows(radii, areas, is_fan, is_closed, metric, n_blocks, starts, columns, values, variances):
+    """Write the rows: weights of the curvatures that give the local linear regression at each vertex.
+
+    Near a boundary they fade into the local mean.  `variances` gets the mean square of the distance along an axis.
+    """
+    n = radii.shape[0]
+    for block in prange(n_blocks):
+        members, slots = np.empty(CAPACITY, np.int64), np.zeros(n, np.int32)
+        points, counts, weights = np.empty((CAPACITY, 2)), np.empty(CAPACITY, np.int64), np.empty(CAPACITY)
+        for v in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            variances[v] = np.nan
+            if starts[v] == starts[v + 1]:
+                continue
+            k = develop_ball(v, radii[v], is_closed[v], metric, members, slots, points, counts)
+            total, mx, my, xx, xy, yy = weighted_moments(k, radii[v], areas, members, points, weights)
+            variances[v] = 0.5 * (xx + yy)
+            gx, gy = slope_terms(mx, my, xx, xy, yy)
+            share = max(1.0 - (gx * mx + gy * my) / ONE_SIDED, 0.0)
+            gx, gy = share * gx, share * gy
+            i = starts[v]
+            for m in range(k):
+                if areas[members[m]] > 0.0 and points[m, 0] ** 2 + points[m, 1] ** 2 < radii[v] ** 2:
+                    columns[i] = members[m]
+                    values[i] = weights[m] / total * (1.0 - gx * (points[m, 0] - mx) - gy * (points[m, 1] - my))
+                    i += 1
+
+
+@parallel_kernel
+def apply_rows(starts, columns, values, x, out):
+    """Write the product of the sparse matrix and x; nan for an empty row."""
+    for v in prange(starts.shape[0] - 1):
+        total = 0.0
+        for i in range(starts[v], starts[v + 1]):
+            total += values[i] * x[columns[i]]
+        out[v] = total if starts[v + 1] > starts[v] else np.nan
+
+
+@parallel_kernel
+def defect_sensitivities(metric, areas, squares, densities):
+    """Write for each vertex the sum of squares of the derivatives of its defect in the edge lengths, and the density.
+
+    The derivative of an angle is 1/height in the opposite side and -cot(far angle)/length in a side at it.  The density
+    is the sum over edges of ((h + h')/2)², h and h' the heights over it on both sides, per area: with the
+    second derivative of a smooth function across the edge it makes the transposed derivative of a weighted sum of
+    defects with these weights.
+    """
+    for v in prange(metric.offsets.shape[0] - 1):
+        total = density = area = 0.0
+        for i in range(metric.offsets[v], metric.offsets[v + 1]):
+            c = metric.corners[i]
+            f, k = c // 3, c % 3
+            twice = 6.0 * areas[f] / 3.0
+            height = twice / metric.lengths[f, k]
+            total += 1.0 / (height * height)
+            area += areas[f]
+            for side in range(2):
+                total += 0.5 * spoke_derivative(c, side, metric) ** 2
+            for j in range(3):
+                density += 0.5 * half_heights(3 * f + j, areas, metric) ** 2
+        squares[v] = total
+        densities[v] = density / area
+
+
+@kernel
+def spoke_derivative(c, side, metric):
+    """Derivative of the defect at the vertex of corner c in the length of a side there, by both faces on it."""
+    f, k = c // 3, c % 3
+    far = k + 1 if side == 0 else k + 2
+    length = metric.lengths[f, (k + 2 - side) % 3]
+    total = 1.0 / math.tan(metric.angles[f, far % 3])
+    g = metric.partners[c if side == 0 else 3 * f + (k + 2) % 3]
+    if g >= 0:
+        w = metric.faces[f, far % 3]
+        j = g % 3 if metric.faces[g // 3, g % 3] == w else (g % 3 + 1) % 3
+        total += 1.0 / math.tan(metric.angles[g // 3, j])
+    return total / length
+
+
+@kernel
+def half_heights(h, areas, metric):
+    """Half the sum of the heights over the edge of half-edge h."""
+    f = h // 3
+    total = areas[f] / metric.lengths[f, (h % 3 + 2) % 3]
+    g = metric.partners[h]
+    if g >= 0:
+        total += areas[g // 3] / metric.lengths[g // 3, (g % 3 + 2) % 3]
+    return total
+
+
+@parallel_kernel
+def ring_means(x, offsets, neighbours, out):
+    """Write the mean of the finite values in each column of x at each vertex and its neighbours, nan without any."""
+    for v in prange(offsets.shape[0] - 1):
+        for j in range(x.shape[1]):
+            total, count = 0.0, 0
+            if math.isfinite(x[v, j]):
+                total, count = x[v, j], 1
+            for i in range(offsets[v], offsets[v + 1]):
+                y = x[neighbours[i], j]
+                if math.isfinite(y):
+                    total += y
+                    count += 1
+            out[v, j] = total / count if count > 0 else np.nan
