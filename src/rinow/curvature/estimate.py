@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,8 @@ class Estimate:
         Mean and principal curvatures.
     direction1, direction2 : (n_vertices, 3) ndarray of float or None
         Unit principal directions.
+    noise, spacing : (n_vertices,) ndarray of float or None
+        Standard deviation of the positions from a smooth surface, and the distance of neighbours.
     """
 
     gaussian: Floats
@@ -34,3 +36,12 @@ class Estimate:
     k2: Floats | None = None
     direction1: Floats | None = None
     direction2: Floats | None = None
+    noise: Floats | None = None
+    spacing: Floats | None = None
+
+    def with_gaussian(self, gaussian: Floats, spread: Floats) -> Estimate:
+        """The same with another Gaussian curvature: k1 and k2 have it as their product, the mean stays."""
+        if self.mean is None:
+            return replace(self, gaussian=gaussian, spread=spread)
+        half = np.sqrt(np.maximum(self.mean * self.mean - gaussian, 0.0))
+        return replace(self, gaussian=gaussian, spread=spread, k1=self.mean + half, k2=self.mean - half)

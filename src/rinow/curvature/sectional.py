@@ -23,6 +23,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Progress = Callable[[int, int], object]
 
+QUARTIC = 3
+"""Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
 PASSES = 2
 """Averages of squared differences over the centres around."""
 FLAT_DEFECT = 1e-10
@@ -63,15 +65,18 @@ def sectional(
     sheet, index = patch_sheet(mesh, barriers)
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
     samples = sample(sheet, ladder, QUALITIES[quality].selects)
-    out, direction1, direction2 = _blended(sheet, ladder, QUALITIES[quality], samples)
+    out, direction1, direction2, noise = _blended(sheet, ladder, QUALITIES[quality], samples)
     shrinkage = _shrinkage(samples, out)
     out[:, 0] *= shrinkage
     gaussian, mean, risk, reach = (_spread_out(out[:, i], index, mesh.n_vertices) for i in range(4))
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
     is_flat = _flat_vertices(mesh)
     gaussian[is_flat & np.isfinite(gaussian)] = 0.0
-    half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
-    estimate = Estimate(gaussian, CALIBRATION * np.sqrt(risk), reach, mean, mean + half, mean - half, direction1, direction2)
+    noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
+    spread, half = CALIBRATION * np.sqrt(risk), np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
+    estimate = Estimate(
+        gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing
+    )
     if radius is None:
         _fill_in(mesh, estimate)
     if progress is not None:
@@ -81,8 +86,8 @@ def sectional(
 
 def _blended(
     sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples
-) -> tuple[Floats, Floats, Floats]:
-    """K, H, risk, radius and order at the vertices of the sheet, and principal directions."""
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """K, H, risk, radius and order at the vertices of the sheet, principal directions, and variance of the noise."""
     low, high, top, noise = windows(samples)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres, sizes = cover(sheet, core)
@@ -95,25 +100,25 @@ def _blended(
         pilot = chosen_at(centres, samples, samples.torus_logs)
         reaches = ladder.reaches[pilot.radius] * ladder.factors[centres]
         patches.pilot_frames(centres, tori.copy(), reaches, pilot.order, ladder.most, N_BLOCKS, sheet, tori)
-    core, noise = core[centres], noise[centres]
+    core, at_centres = core[centres], noise[centres]
     if quality.selects:
         window = _widened(low[centres], high[centres], top[centres], len(ladder.reaches))
         links = members_of_discs(sheet, centres, centres, 2.2 * core)
-        choice = select(sheet, ladder, centres, tori, (*window, noise), links, PASSES)
+        choice = select(sheet, ladder, centres, tori, (*window, at_centres), links, PASSES)
     else:
         choice = chosen_at(centres, samples, samples.torus_logs)
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES))
-    _add_patches(sheet, ladder, centres, tori, choice, CORE * core, noise, sizes, quality.power, totals)
+    _add_patches(sheet, ladder, centres, tori, choice, CORE * core, at_centres, sizes, quality.power, totals)
     out, direction1, direction2 = np.empty((len(totals), 5)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
     patches.mean_values(totals, sheet.normals, out, direction1, direction2)
-    return out, direction1, direction2
+    return out, direction1, direction2, noise
 
 
 def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints, Ints]:
-    """The windows with a radius more at each end, and the highest order with two more, even."""
+    """The windows with a radius more at each end, wide enough for a quartic, and the highest order with two more, even."""
     return (
         np.maximum(low - 1, 0).astype(np.int32),
-        np.minimum(high + 1, n_radii - 1).astype(np.int32),
+        np.clip(high + 1, min(QUARTIC, n_radii - 1), n_radii - 1).astype(np.int32),
         np.minimum((top + 3) // 2 * 2, 8).astype(np.int32),
     )
 

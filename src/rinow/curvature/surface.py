@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rinow._arrays import as_floats
 from rinow._executor import Executor
 from rinow.curvature.angle_defect import angle_defect
+from rinow.curvature.auto import auto
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.intrinsic import intrinsic
 from rinow.curvature.lifted import lifted
@@ -27,6 +28,7 @@ __all__ = ["SurfaceCurvature", "surface_curvature"]
 Floats = NDArray[np.float64]
 
 INTRINSIC = {"angle_defect": angle_defect, "intrinsic": intrinsic, "wald": wald}
+WITH_RADIUS = {"auto": auto, "sectional": sectional}
 METHODS = ("auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect")
 QUALITIES = ("best", "fast")
 NO_VALUE = (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE)
@@ -192,16 +194,14 @@ def _chosen_method(method: str, quality: str, mesh: TriangleMesh | IntrinsicMesh
     for name, value, allowed in (("method", method, METHODS), ("quality", quality, QUALITIES)):
         if value not in allowed:
             raise InvalidInputError(f"{name} = {value!r} is unknown; choose from {', '.join(allowed)}.")
-    if method != "auto":
-        return method
-    return "wald" if isinstance(mesh, IntrinsicMesh) else "sectional"
+    return "intrinsic" if method == "auto" and isinstance(mesh, IntrinsicMesh) else method
 
 
 def _checked_radius(radius: float, method: str) -> float:
     value = as_floats(radius, "radius")
     if value.ndim or not 0.0 < value < np.inf:
         raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
-    if method != "sectional":
+    if method not in WITH_RADIUS:
         raise InvalidInputError(
             f"radius = {radius!r} is not for method {method!r}, which takes the star of each vertex; leave it out."
         )
@@ -216,9 +216,9 @@ def _estimate(
     progress: Callable[[int, int], object] | None,
     executor: Executor | None,
 ) -> Estimate:
-    if method == "sectional":
-        options = {"radius": radius, "progress": progress, "executor": executor}
-        return sectional(as_triangle_mesh(mesh), quality=quality, **options)
+    if method in WITH_RADIUS:
+        options = {"quality": quality, "radius": radius, "progress": progress, "executor": executor}
+        return WITH_RADIUS[method](as_triangle_mesh(mesh), **options)
     estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)

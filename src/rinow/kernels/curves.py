@@ -33,3 +33,25 @@ def lifted_edge_lengths(vertices, faces, normals, edge_lengths, out):
         for k in range(3):
             i, j = faces[f, (k + 1) % 3], faces[f, (k + 2) % 3]
             out[f, k] = haantjes_lift(edge_lengths[f, k], edge_curvature(vertices, normals, i, j))
+
+
+@parallel_kernel
+def chord_errors(vertices, offsets, neighbours, frames, out):
+    """Write the largest (k c)^2 / 12 over the edges at each vertex, k the normal curvature along a chord of length c.
+
+    A chord is short by the share (k c)^2 / 24 of its arc, and curvature has the dimension 1/length^2: this is the
+    relative error of a curvature computed from chords.
+    """
+    for v in prange(len(offsets) - 1):
+        worst = 0.0
+        for i in range(offsets[v], offsets[v + 1]):
+            w = neighbours[i]
+            first = second = 0.0
+            for j in range(3):
+                x = vertices[w, j] - vertices[v, j]
+                first, second = first + x * frames.direction1[v, j], second + x * frames.direction2[v, j]
+            c2 = first * first + second * second
+            if c2 > 0.0:
+                k = (frames.k1[v] * first * first + frames.k2[v] * second * second) / c2
+                worst = max(worst, k * k * c2 / 12.0)
+        out[v] = worst

@@ -12,10 +12,10 @@ KAPPA = 0.2
 """The squared bias is at least this share of the variance of the comparison that shows it."""
 DECAY = 10.0
 """The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
-UNSEEN = 1.0
+UNSEEN = 0.3
 """Bias, over the inverse square of the radius, of a quadric where nothing is there to compare it with."""
-ROUNDING = 1e-13
-"""Error of curvature by rounding, over the inverse square of the spacing."""
+ROUNDING, MIDDLE = 1e-13, 5.0
+"""Error of curvature by rounding, over the inverse square of the spacing, and the radius to take if all are that good."""
 
 
 @parallel_kernel
@@ -73,13 +73,14 @@ def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance,
             ratio = reaches[low[i] + k] / reaches[last] if upper >= 0 else 1.0
             squared_biases(t, ratio, upper, tables, bias, bias_variance, biases)
             upper, last = t, low[i] + k
+            floor = ROUNDING * ROUNDING * (1.0 + math.log(reaches[low[i] + k] / MIDDLE) ** 2)
             for d in range(N_ORDERS):
                 if math.isnan(tables.variance[t, d]) or math.isnan(biases[d]):
                     continue
-                value = max(max(tables.variance[t, d], variance[t, d]) + biases[d], ROUNDING * ROUNDING)
+                value = max(max(tables.variance[t, d], variance[t, d]) + biases[d], floor)
                 if len(logs):
                     logs[i, low[i] + k, d] = math.log(value)
-                if value <= best:  # below the error of rounding the smallest ball and the highest order
+                if value <= best:  # the highest order below the error of rounding
                     best, best_radius, best_order = value, low[i] + k, d + 2
             if best_order == 0:
                 fallback = low[i] + k

@@ -1,0 +1,73 @@
+"""The families of estimates together: each vertex takes its curvature from the ones with the least expected error."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rinow.curvature.estimate import Estimate, Floats
+from rinow.curvature.intrinsic import intrinsic_curvature
+from rinow.curvature.sectional import CALIBRATION, sectional
+from rinow.kernels import curves, monge
+from rinow.mesh import TriangleMesh
+
+__all__ = ["auto"]
+
+QUIET = 1e-3
+"""Noise of the positions, in spacings, up to which edge lengths may tell more than positions."""
+WORTH = 0.02
+"""Share of the vertices that must be able to gain before the edge lengths are examined."""
+
+
+def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estimate:
+    r"""Curvature from positions and edge lengths, blended at each vertex by the expected errors.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    quality : {"best", "fast"}, optional
+        With "fast" edge lengths are not examined.
+    **options
+        As for `sectional`.
+
+    Returns
+    -------
+    estimate : Estimate
+        That of `sectional`, its Gaussian curvature averaged with that of `intrinsic`.
+
+    Notes
+    -----
+    The fits of `sectional` resolve a surface when a ball of few spacings is enough for their order; on meshes stretched
+    in one direction the long edges make balls large.  Structured meshes of that kind have accurate angle defects
+    nevertheless.  The expected squared error of the latter is that of `intrinsic` plus
+    :math:`(K \max_e (\kappa_e c_e)^2/12)^2` for the chords c of normal curvature κ that stand for geodesics, which edge
+    lengths alone cannot show.  The weights are the inverse squared errors.
+
+    Edge lengths are examined only if this last term leaves room for a gain at some two percent of the vertices and
+    the positions have next to no noise; with noise the fits, which average over more data, win in any case.
+    """
+    estimate = sectional(mesh, quality=quality, **options)
+    if quality != "best" or options.get("radius") is not None:
+        return estimate
+    risk = np.square(estimate.spread / CALIBRATION)
+    chords = estimate.gaussian**2 * np.square(_chord_errors(mesh, estimate))
+    hopeful = (chords < risk) & (estimate.noise < QUIET * estimate.spacing) & ~mesh.topology.vertex_is_boundary
+    if np.count_nonzero(hopeful) < WORTH * mesh.n_vertices:
+        return estimate
+    found = intrinsic_curvature(mesh)
+    other = found.variance + found.squared_bias + chords
+    weight = np.where(hopeful & np.isfinite(other) & np.isfinite(found.gaussian), 1.0 / other, 0.0)
+    own = 1.0 / risk
+    share = np.divide(weight, weight + own, out=np.zeros_like(weight), where=weight > 0.0)
+    gaussian = np.where(share > 0.0, estimate.gaussian + share * (found.gaussian - estimate.gaussian), estimate.gaussian)
+    spread = CALIBRATION * np.sqrt(np.where(share > 0.5, other, risk))
+    return estimate.with_gaussian(gaussian, spread)
+
+
+def _chord_errors(mesh: TriangleMesh, estimate: Estimate) -> Floats:
+    t, errors = mesh.topology, np.empty(mesh.n_vertices)
+    frames = monge.PrincipalFrames(estimate.k1, estimate.k2, estimate.direction1, estimate.direction2, errors[:0, None])
+    curves.chord_errors(mesh.vertices, t.neighbour_offsets, t.neighbours, frames, errors)
+    return errors
