@@ -36,13 +36,14 @@ TIME_LIMIT = 900.0
 
 
 def cells(sizes: list[int]) -> list[dict[str, Any]]:
-    """All meshes: every style and size without noise, then noise on irregular ones."""
+    """All meshes without noise, the largest irregular ones only, then noise on irregular ones."""
     clean = [
         {"surface": s.name, "style": style, "n": n, "noise": 0.0}
         for s in surfaces().values()
         for style in STYLES
         if has(s, style)
         for n in sizes
+        if style == NOISY_STYLE or n != sizes[-1] or len(sizes) < 3
     ]
     n = NOISY_SIZE if NOISY_SIZE in sizes else sizes[-1]
     noisy = [{"surface": s, "style": NOISY_STYLE, "n": n, "noise": x} for s in surfaces() for x in NOISE]

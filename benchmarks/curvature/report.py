@@ -91,15 +91,19 @@ def _shown(x: float, is_best: bool) -> str:
 
 
 def _orders(results: dict[str, Any], sizes: list[int]) -> str:
-    """Slope of the error against h between the last two sizes."""
+    """Slope of the error against h between the last two sizes of a style."""
     styles = ("regular", "irregular", "random", "stretched", "marching cubes")
     lines = [f"| | {' | '.join(styles)} |", f"|---|{'--:|' * len(styles)}"]
     for name in results["errors"]:
         row = []
         for style in styles:
-            e = [_mean(results, name, "K", _columns(n)[style]) for n in sizes[-2:]]
-            ok = len(e) == 2 and np.isfinite(e).all()
-            row.append(f"{np.log(e[0] / e[1]) / np.log(sizes[-1] / sizes[-2]) * 2:.1f}" if ok else "–")
+            errors = [(n, _mean(results, name, "K", _columns(n)[style])) for n in sizes]
+            known = [(n, e) for n, e in errors if np.isfinite(e)][-2:]
+            if len(known) < 2:
+                row.append("–")
+                continue
+            (n, coarse), (m, fine) = known
+            row.append(f"{2 * np.log(coarse / fine) / np.log(m / n):.1f}")
         lines.append(f"| {name} | {' | '.join(row)} |")
     return "\n".join(lines)
 

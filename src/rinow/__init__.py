@@ -36,6 +36,7 @@ _HOME = {
     "arc_length": "curvature.haantjes",
     "curve_curvature": "curvature.curves",
     "graph_curvature": "curvature.graph",
+    "point_cloud_curvature": "curvature.point_cloud",
     "haantjes_curvature": "curvature.haantjes",
     "menger_curvature": "curvature.menger",
     "cayley_menger_determinant": "embedding.cayley_menger",

@@ -7,6 +7,7 @@ from rinow.curvature.graph import graph_curvature as graph_curvature
 from rinow.curvature.haantjes import arc_length as arc_length
 from rinow.curvature.haantjes import haantjes_curvature as haantjes_curvature
 from rinow.curvature.menger import menger_curvature as menger_curvature
+from rinow.curvature.point_cloud import point_cloud_curvature as point_cloud_curvature
 from rinow.curvature.singular import SingularFeatures as SingularFeatures
 from rinow.curvature.singular import singular_features as singular_features
 from rinow.curvature.status import VertexStatus as VertexStatus

@@ -30,7 +30,7 @@ def cloud_sheet(points: Floats) -> tuple[balls.Sheet, Bools]:
     Normals are the area vectors of these stars, averaged over the neighbours; their signs are carried along the tree
     on which normals turn least, outwards at the highest point of each component.
     """
-    near = KDTree(points).query(points, min(NEAREST, len(points) - 1) + 1)[1][:, 1:].astype(np.intp)
+    near = np.asarray(KDTree(points).query(points, min(NEAREST, len(points) - 1) + 1)[1], np.intp)[:, 1:].copy()
     normals, vectors = np.empty_like(points), np.empty_like(points)
     clouds.plane_normals(points, near, normals)
     star, counts, gaps = np.empty_like(near), np.empty(len(points), np.intp), np.empty(len(points))

@@ -62,9 +62,9 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     -----
     Each point is joined to its neighbours in the Delaunay triangulation of the 36 nearest points over their plane of
     least squares, and they to it; balls grow over these links as they do over the edges of a mesh, and the same
-    polynomials over osculating tori are fitted to them.  The signs of the normals, and with them those of the mean and the principal
-    curvatures, cannot be known from points: they agree between neighbours and are outward at the highest point of
-    each component, which is right for closed surfaces.  On a surface with one side only they change along a cut.
+    polynomials over osculating tori are fitted to them.  The signs of the normals, and with them those of the mean
+    and the principal curvatures, cannot be known from points: they agree between neighbours and are outward at the
+    highest point of each component, which is right for closed surfaces.  On a surface with one side only they change along a cut.
     The Gaussian curvature does not depend on them.
 
     Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Sheets nearer to each
@@ -112,7 +112,7 @@ def _of_distinct(points: Floats, radius: float | None) -> tuple[Floats, Floats, 
     quality = QUALITIES["best"]
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
     samples = sample(sheet, ladder, quality.selects)
-    out, direction1, direction2 = _blended(sheet, ladder, quality, samples)
+    out, direction1, direction2 = _blended(sheet, ladder, quality, samples)[:3]
     out[:, 0] *= _shrinkage(samples, out)
     values = np.column_stack([out[:, 0], out[:, 1], CALIBRATION * np.sqrt(out[:, 2]), out[:, 3]])
     missing = np.flatnonzero(~np.isfinite(values[:, 0]))

@@ -1,4 +1,4 @@
-"""Points without a mesh: tangent planes, and the neighbours of each point in the Delaunay triangulation of its plane."""
+"""Points without a mesh: their tangent planes, and their neighbours in Delaunay triangulations over these."""
 
 import math
 
