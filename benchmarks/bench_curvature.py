@@ -31,7 +31,7 @@ HERE = Path(__file__).parent
 DOCS = HERE.parent / "docs"
 NOISE = (0.01, 0.05, 0.1)
 NOISY_STYLE, NOISY_SIZE = "irregular", 4000
-TIME_LIMIT = 900.0
+TIME_LIMIT = 1800.0
 """Seconds for all meshes of one estimator."""
 
 

@@ -12,7 +12,7 @@ from rinow._arrays import read_only
 from rinow.kernels import crease_lines, creases, stencils
 from rinow.mesh import TriangleMesh
 
-__all__ = ["CreaseLines", "EdgeTurnings", "crease_barriers", "crease_lines_of"]
+__all__ = ["CreaseLines", "EdgeTurnings", "crease_barriers", "crease_lines_of", "crease_vertices"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -189,6 +189,13 @@ def crease_barriers(mesh: TriangleMesh) -> Bools:
         In the order of ``mesh.topology.edges``.
     """
     return crease_lines_of(mesh).is_crease
+
+
+def crease_vertices(mesh: TriangleMesh) -> Bools:
+    """(n_vertices,): ends of the edges of `crease_barriers`; balls may reach them but not grow beyond."""
+    on_crease = np.zeros(mesh.n_vertices, np.bool_)
+    on_crease[mesh.topology.edges[crease_barriers(mesh)]] = True
+    return on_crease
 
 
 def _exponents(theta: Floats, jumps: Floats) -> Floats:

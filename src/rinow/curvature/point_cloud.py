@@ -64,8 +64,8 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     least squares, and they to it; balls grow over these links as they do over the edges of a mesh, and the same
     polynomials over osculating tori are fitted to them.  The signs of the normals, and with them those of the mean
     and the principal curvatures, cannot be known from points: they agree between neighbours and are outward at the
-    highest point of each component, which is right for closed surfaces.  On a surface with one side only they change along a cut.
-    The Gaussian curvature does not depend on them.
+    highest point of each component, which is right for closed surfaces.  On a surface with one side only they change
+    along a cut.  The Gaussian curvature does not depend on them.
 
     Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Sheets nearer to each
     other than some spacings are taken for one.  Lengths from 1e-140 to 1e140 neither
