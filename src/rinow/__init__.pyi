@@ -17,6 +17,8 @@ from rinow.comparison.lipschitz import dilatation as dilatation
 from rinow.comparison.lipschitz import lipschitz_distance as lipschitz_distance
 from rinow.curvature.alt import alt_curvature as alt_curvature
 from rinow.curvature.curves import curve_curvature as curve_curvature
+from rinow.curvature.graph import GraphCurvature as GraphCurvature
+from rinow.curvature.graph import graph_curvature as graph_curvature
 from rinow.curvature.haantjes import arc_length as arc_length
 from rinow.curvature.haantjes import haantjes_curvature as haantjes_curvature
 from rinow.curvature.menger import menger_curvature as menger_curvature
@@ -27,6 +29,9 @@ from rinow.curvature.rinow import RinowCurvature as RinowCurvature
 from rinow.curvature.rinow import RinowPointCurvature as RinowPointCurvature
 from rinow.curvature.rinow import rinow_curvature as rinow_curvature
 from rinow.curvature.rinow import rinow_point_curvature as rinow_point_curvature
+from rinow.curvature.point_cloud import point_cloud_curvature as point_cloud_curvature
+from rinow.curvature.singular import SingularFeatures as SingularFeatures
+from rinow.curvature.singular import singular_features as singular_features
 from rinow.curvature.status import VertexStatus as VertexStatus
 from rinow.curvature.surface import SurfaceCurvature as SurfaceCurvature
 from rinow.curvature.surface import surface_curvature as surface_curvature

@@ -17,7 +17,7 @@ from rinow._arrays import as_distance_matrix, as_floats, as_indices, as_points, 
 from rinow.errors import InvalidInputError, NotAMetricError
 from rinow.kernels import metrics
 
-__all__ = ["MetricSpace", "as_metric_space", "trusted_metric_space"]
+__all__ = ["MetricSpace", "as_metric_space", "graph_edge_lengths", "trusted_metric_space"]
 
 Floats = NDArray[np.float64]
 
@@ -179,7 +179,7 @@ class MetricSpace:
         >>> MetricSpace.from_graph(nx.cycle_graph(6)).eccentricities
         array([3., 3., 3., 3., 3., 3.])
         """
-        D = shortest_path(_edge_lengths(graph), method="D", directed=False)
+        D = shortest_path(graph_edge_lengths(graph), method="D", directed=False)
         D = np.minimum(D, D.T)
         apart = np.argwhere(np.isinf(D))
         if len(apart) and not infinite:
@@ -232,7 +232,7 @@ def _check_triangle_inequality(D: Floats, rtol: float) -> None:
         )
 
 
-def _edge_lengths(graph: Any) -> csr_array:
+def graph_edge_lengths(graph: Any) -> csr_array:
     """The lengths of the edges as a sparse matrix; zeros are kept, parallel edges reduced to the shortest."""
     if issparse(graph):
         edges = coo_array(graph)

@@ -214,3 +214,21 @@ def test_quadruple_says_why_there_is_no_value(capsys, distances, reason):
 def test_quadruple_names_what_is_not_a_metric(capsys, distances, fault):
     assert main(["quadruple", *distances.split()]) == 1
     assert fault in capsys.readouterr().err
+
+
+def test_features_writes_fields_and_lists_them(folder, capsys):
+    arguments = ["features", "in.ply", "-o", "out.ply", "-o", "out.npz", "--picture", "out.png", "--json"]
+    assert main(arguments) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record["features"] == {"cone_points": 4, "crease_edges": 6, "corners": 4}
+    assert record["outputs"] == ["out.ply", "out.npz", "out.png"]
+    expected = rinow.singular_features((V, F))
+    assert record["crease_edges"] == expected.crease_edges.tolist()
+    for name in ("out.ply", "out.npz"):
+        data = rinow.read_mesh(name).vertex_data
+        np.testing.assert_array_equal(data["feature"], 2)
+        np.testing.assert_allclose(data["cone_angle"], np.pi)
+    assert (folder / "out.png").read_bytes().startswith(b"\x89PNG")
+    assert main(["features", "in.ply"]) == 0
+    assert "crease edges" in capsys.readouterr().out
+    assert main(["features", "nothing.ply"]) == 1

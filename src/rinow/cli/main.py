@@ -23,6 +23,7 @@ app = App(
 app.command("rinow.cli.demo:demo")
 app.command("rinow.cli.info:info")
 app.command("rinow.cli.curvature:curvature")
+app.command("rinow.cli.features:features")
 app.command("rinow.cli.quadruple:quadruple")
 app.command("rinow.cli.compare:compare")
 app.command("rinow.cli.net:net")

@@ -1,0 +1,91 @@
+"""A point cloud as the fits of patches see it: neighbours, normals that agree in sign, and the spacing of the points."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
+from scipy.spatial import KDTree
+
+from rinow.curvature.stencils import N_BLOCKS, NEEDLES
+from rinow.kernels import balls, clouds, stencils
+
+__all__ = ["cloud_sheet"]
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+NEAREST = 36
+"""Points looked at around each one: five rows of points that are five times as near along a row as across."""
+BORDER_GAP = 2.8
+"""Angle between neighbours, in radians, that tells a border: inside, triangles of a Delaunay triangulation have less."""
+
+
+def cloud_sheet(points: Floats) -> tuple[balls.Sheet, Bools]:
+    """The sheet of a cloud of distinct finite points, in their order, and which points are at a border.
+
+    Neighbours are those of the Delaunay triangulation of the nearest points, laid over the plane of least squares.
+    Normals are the area vectors of these stars, averaged over the neighbours; their signs are carried along the tree
+    on which normals turn least, outwards at the highest point of each component.
+    """
+    near = np.asarray(KDTree(points).query(points, min(NEAREST, len(points) - 1) + 1)[1], np.intp)[:, 1:].copy()
+    normals, vectors = np.empty_like(points), np.empty_like(points)
+    clouds.plane_normals(points, near, normals)
+    star, counts, gaps = np.empty_like(near), np.empty(len(points), np.intp), np.empty(len(points))
+    clouds.stars(points, normals, near, N_BLOCKS, star, counts, gaps)
+    links = _links(star, counts)
+    clouds.star_area_vectors(points, normals, star, counts, vectors)
+    signs = _agreeing_signs(points, normals, links)
+    offsets, neighbours = links.indptr.astype(np.int32), links.indices.astype(np.int32)
+    smooth = np.empty_like(normals)
+    for _ in range(2):
+        stencils.ring_directions(vectors * signs[:, None], False, offsets, neighbours, smooth)
+        vectors, signs = smooth.copy(), np.ones(len(points))
+    spacing = _spacing(points, near, offsets, neighbours)
+    surface = (points, smooth, offsets, neighbours, spacing, np.zeros(len(points), np.bool_))
+    return balls.Sheet(*surface, True), gaps > BORDER_GAP
+
+
+def _spacing(points: Floats, near: Indices, offsets: NDArray[np.int32], neighbours: NDArray[np.int32]) -> Floats:
+    """Mean distance of neighbours, between the edge of equilateral triangles of the same density and some of it.
+
+    The same rule as for meshes: rows of points need the larger one, clusters must not get too small a one.
+    """
+    edges, sums = np.empty(len(points)), np.empty(len(points))
+    stencils.mean_edge_lengths(points, offsets, neighbours, edges)
+    reach = np.linalg.norm(points[near[:, -1]] - points, axis=1)
+    even = np.sqrt(2.0 / np.sqrt(3.0) * np.pi / (near.shape[1] + 0.5)) * reach
+    local = np.clip(edges, even, NEEDLES * even)
+    stencils.ring_sums(local, offsets, neighbours, sums)
+    return sums / (np.diff(offsets) + 1)
+
+
+def _links(star: Indices, counts: Indices) -> csr_array:
+    """Symmetric neighbourhoods: two points are joined if one is in the star of the other."""
+    n = len(star)
+    columns = star[np.arange(star.shape[1]) < counts[:, None]]
+    rows = np.repeat(np.arange(n), counts)
+    directed = csr_array(coo_array((np.ones(len(rows)), (rows, columns)), shape=(n, n)))
+    links = csr_array(directed + directed.T)
+    links.sort_indices()
+    return links
+
+
+def _agreeing_signs(points: Floats, normals: Floats, links: csr_array) -> Floats:
+    """Signs with which normals agree between neighbours, along the tree where they turn least."""
+    rows = np.repeat(np.arange(len(points)), np.diff(links.indptr))
+    turn = 1.0 - np.abs(np.sum(normals[rows] * normals[links.indices], axis=1))
+    # Steps along the surface are preferred to those across a gap between two sheets.
+    step = points[links.indices] - points[rows]
+    rise = np.abs(np.sum(step * normals[rows], axis=1)) / np.maximum(np.linalg.norm(step, axis=1), 1e-300)
+    tree = minimum_spanning_tree(csr_array((1e-6 + turn + rise, links.indices, links.indptr), shape=links.shape))
+    signs = np.ones(len(points))
+    n_parts, labels = connected_components(tree, directed=False)
+    top = np.lexsort((-points[:, 2], labels))
+    for root in top[np.searchsorted(labels[top], np.arange(n_parts))]:
+        order, parents = breadth_first_order(tree, root, directed=False)
+        signs[root] = 1.0 if normals[root, 2] >= 0.0 else -1.0
+        clouds.carry_signs(order, parents, normals, signs)
+    return signs

@@ -1,0 +1,231 @@
+"""Creases of a mesh: edges whose turning is there at every scale, so that the curvature across them is J/(2 r)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow._arrays import read_only
+from rinow.kernels import crease_lines, creases, stencils
+from rinow.mesh import TriangleMesh
+
+__all__ = ["CreaseLines", "EdgeTurnings", "crease_barriers", "crease_lines_of", "crease_vertices"]
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+N_BLOCKS = 16
+"""Pieces a kernel cuts its work into; each has scratch of its own."""
+NOISE_RINGS = 2
+"""Averages over rings of the noise of single stars, which ten edges tell badly."""
+BARRIER_ANGLE = np.radians(35.0)
+"""Sections stop at an edge that turns by more than this, and by `BARRIER_NOISE` standard deviations: facets of smooth
+parts rarely turn by as much, and two creases closer than a section is long must not be taken for a round."""
+BARRIER_NOISE = 4.5
+STRONG_ANGLE, STRONG_NOISE = np.radians(20.0), 4.5
+"""Least jump of an edge that starts a line, alone and in standard deviations."""
+WEAK_ANGLE, WEAK_NOISE = np.radians(12.0), 2.5
+"""The same for an edge that continues a line."""
+EXACT_ANGLE, EXACT_DEVIATION, EXACT_SHARE = np.radians(8.0), np.radians(0.5), 0.05
+"""Least jump where both sides are flat, the deviation that counts as flat, and how exactly the jump is the turning."""
+EXACT_NOISE = np.radians(1.0)
+"""Noise that a mesh with such sides may have around the edge."""
+CREASE_EXPONENT = -0.5
+"""Curvature across a crease scales as r to the power of -1, on a smooth surface of 0; halfway is the border."""
+MOST_JUMP = 2.0
+"""A jump above this multiple of the turning is made by the extrapolation, not by the edge."""
+LEAST_LINE, LEAST_STRONG = 4, 2
+"""Edges of a line, and strong ones among them, below which it is dropped."""
+LEAST_OPEN_LINE = 6
+"""Edges of a chain with a free end below which it is dropped: creases close, branch, or are long."""
+PARALLEL_SHARE = 0.5
+"""Of three crease edges around one face, the one with less than this share of the jump of the others is dropped."""
+
+
+class EdgeTurnings:
+    """Turning of the normal at each edge of a mesh, and how noisy it is.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface; edges with other than two proper faces have no turning.
+    """
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        self.mesh = mesh
+        t = mesh.topology
+        self.halfedges = t.edge_halfedges
+        self.normals = np.empty((mesh.n_faces, 3))
+        creases.face_normals(mesh.vertices, mesh.faces, self.normals)
+        self.turnings = np.empty(t.n_edges)
+        creases.edge_turnings(
+            mesh.vertices, mesh.faces, mesh.outward_flips, self.normals, t.partners, self.halfedges, self.turnings
+        )
+
+    @cached_property
+    def edge_of_halfedge(self) -> Indices:
+        """(3 n_faces,): number of the edge of each half-edge; -1 for faces that take no part."""
+        index = np.full(3 * self.mesh.n_faces, -1, np.intp)
+        index[self.halfedges] = np.arange(len(self.halfedges))
+        other = self.mesh.topology.partners[self.halfedges]
+        index[other[other >= 0]] = np.flatnonzero(other >= 0)
+        return read_only(index)
+
+    @cached_property
+    def gains(self) -> Floats:
+        """(n_edges,): standard deviation of each turning for heights of deviation 1; inf without two faces."""
+        mesh, gains = self.mesh, np.empty(len(self.halfedges))
+        creases.edge_gains(mesh.vertices, mesh.faces, mesh.topology.partners, self.halfedges, gains)
+        return read_only(gains)
+
+    @cached_property
+    def height_noise(self) -> Floats:
+        """(n_edges,): standard deviation of the heights of the vertices around each edge, a length."""
+        t, n = self.mesh.topology, self.mesh.n_vertices
+        noise, sums = np.empty(n), np.empty(n)
+        creases.height_noise(
+            self.turnings, self.gains, self.edge_of_halfedge, t.corner_offsets, t.vertex_corners, N_BLOCKS, noise
+        )
+        for _ in range(NOISE_RINGS):
+            stencils.ring_sums(noise, t.neighbour_offsets, t.neighbours, sums)
+            noise = sums / (np.diff(t.neighbour_offsets) + 1)
+        return read_only(noise[t.edges].mean(axis=1))
+
+    @cached_property
+    def noise(self) -> Floats:
+        """(n_edges,): standard deviation of each turning, in radians; inf where it has none."""
+        noise, gains = self.height_noise, self.gains
+        return read_only(np.multiply(noise, gains, out=np.full_like(gains, np.inf), where=np.isfinite(gains)))
+
+    def jumps(self, candidates: Indices, barrier: Bools) -> tuple[Floats, Floats]:
+        """(n_edges,) each: the turning that neither side explains, 0 off the candidates, and its standard error."""
+        mesh, jumps, errors = self.mesh, np.zeros(len(self.halfedges)), np.zeros(len(self.halfedges))
+        creases.edge_jumps(
+            candidates,
+            mesh.vertices,
+            mesh.faces,
+            mesh.outward_flips,
+            self.normals,
+            mesh.topology.partners,
+            self.halfedges,
+            self.edge_of_halfedge,
+            barrier,
+            self.height_noise,
+            N_BLOCKS,
+            jumps,
+            errors,
+        )
+        return jumps, errors
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CreaseLines:
+    """Creases of a mesh by its edges, in the order of ``mesh.topology.edges``.
+
+    Attributes
+    ----------
+    is_crease : (n_edges,) ndarray of bool
+        The edge is part of a crease.
+    angles : (n_edges,) ndarray of float
+        Angle of the crease in radians, by which the normal jumps, convex positive; 0 elsewhere.
+    errors : (n_edges,) ndarray of float
+        One standard error of `angles`.
+    exponents : (n_edges,) ndarray of float
+        Power of r by which the curvature across the edge scales: -1 for a crease, 0 for a smooth surface.
+    degrees : (n_vertices,) ndarray of intp
+        Number of creases at each vertex; 3 stands for more.
+    turns : (n_vertices,) ndarray of float
+        Angle in radians by which a crease turns at a vertex where two edges of it meet.
+    """
+
+    is_crease: Bools
+    angles: Floats
+    errors: Floats
+    exponents: Floats
+    degrees: Indices
+    turns: Floats
+
+
+def crease_lines_of(mesh: TriangleMesh) -> CreaseLines:
+    """The creases of a mesh, linked to lines.
+
+    Sections across the edges are followed twice: first up to edges that turn by much, then up to the creases found.
+    """
+    turnings = EdgeTurnings(mesh)
+    theta = np.nan_to_num(turnings.turnings)
+    candidates = np.flatnonzero(np.abs(theta) >= WEAK_ANGLE / MOST_JUMP)
+    barrier = np.abs(theta) > np.maximum(BARRIER_ANGLE, BARRIER_NOISE * turnings.noise)
+    jumps = errors = np.zeros_like(theta)
+    for _ in range(2):
+        jumps, errors = turnings.jumps(candidates, barrier)
+        strong, weak = _evidence(theta, jumps, errors)
+        barrier = _linked(turnings, strong, weak, np.abs(jumps))
+    degrees, turns = np.empty(mesh.n_vertices, np.intp), np.empty(mesh.n_vertices)
+    t = mesh.topology
+    crease_lines.junctions(
+        barrier, t.edges, turnings.edge_of_halfedge, t.corner_offsets, t.vertex_corners, mesh.vertices, degrees, turns
+    )
+    angles = np.where(barrier, jumps, 0.0)
+    return CreaseLines(barrier, angles, errors, _exponents(theta, jumps), degrees, turns)
+
+
+def crease_barriers(mesh: TriangleMesh) -> Bools:
+    """(n_edges,): edges that are creases beyond doubt, which the neighbourhood of a vertex must not grow across.
+
+    Noise of up to a tenth of the edge length makes no barrier on a smooth surface.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+
+    Returns
+    -------
+    is_crease : (n_edges,) ndarray of bool
+        In the order of ``mesh.topology.edges``.
+    """
+    return crease_lines_of(mesh).is_crease
+
+
+def crease_vertices(mesh: TriangleMesh) -> Bools:
+    """(n_vertices,): ends of the edges of `crease_barriers`; balls may reach them but not grow beyond."""
+    on_crease = np.zeros(mesh.n_vertices, np.bool_)
+    on_crease[mesh.topology.edges[crease_barriers(mesh)]] = True
+    return on_crease
+
+
+def _exponents(theta: Floats, jumps: Floats) -> Floats:
+    """The power -J/Θ of r, with Θ the turning at the smallest scale, the two faces of the edge."""
+    return np.clip(-np.divide(jumps, theta, out=np.zeros_like(theta), where=theta != 0.0), -MOST_JUMP, 0.0)
+
+
+def _evidence(theta: Floats, jumps: Floats, errors: Floats) -> tuple[Bools, Bools]:
+    """Edges that start a line, and edges that may continue one."""
+    J, exponents = np.abs(jumps), _exponents(theta, jumps)
+    scales = (exponents < CREASE_EXPONENT) & (exponents > -MOST_JUMP)
+    exact = (J > EXACT_ANGLE) & (errors < EXACT_NOISE) & (np.abs(jumps - theta) < EXACT_SHARE * J)
+    strong = scales & (exact | ((J > STRONG_ANGLE) & (J > STRONG_NOISE * errors)))
+    weak = scales & (exact | ((J > WEAK_ANGLE) & (J > WEAK_NOISE * errors)))
+    return strong, weak
+
+
+def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, strength: Floats) -> Bools:
+    """Lines of strong edges continued by weak ones, without whiskers, doubled edges and crumbs."""
+    mesh, index = turnings.mesh, turnings.edge_of_halfedge
+    t = mesh.topology
+    rows = (index, t.corner_offsets, t.vertex_corners)
+    kept = strong.copy()
+    crease_lines.spread_along_lines(kept, weak, t.edges, *rows, mesh.vertices)
+    doubled = np.zeros_like(kept)
+    crease_lines.weakest_sides(kept, strength, index, PARALLEL_SHARE, doubled)
+    kept &= ~doubled
+    may_end = t.vertex_is_boundary | t.vertex_is_on_nonmanifold_edge
+    crease_lines.remove_short_ends(kept, t.edges, may_end, *rows, LEAST_OPEN_LINE)
+    labels = crease_lines.line_components(kept, t.edges, mesh.n_vertices)
+    sizes = np.bincount(labels[kept], minlength=mesh.n_vertices)
+    starts = np.bincount(labels[kept & strong], minlength=mesh.n_vertices)
+    return kept & (sizes[labels] >= LEAST_LINE) & (starts[labels] >= LEAST_STRONG)

@@ -1,0 +1,149 @@
+"""Points without a mesh: their tangent planes, and their neighbours in Delaunay triangulations over these."""
+
+import math
+
+import numpy as np
+
+from rinow.kernels import monge
+from rinow.kernels._jit import kernel, parallel_kernel, prange
+
+FLAT = 1e-12
+"""Share of the largest variance that the second one must have for a plane to be determined."""
+BOX = 4.0
+"""Half side of the square that bounds a Voronoi cell, in distances of the farthest neighbour looked at."""
+OUTSIDE = -1
+"""Owner of the sides of that square."""
+
+
+@kernel
+def covariance(v, near, points, out):
+    """Write the covariance of a point and its neighbours."""
+    k = near.shape[0] + 1
+    mean = np.empty(3)
+    for a in range(3):
+        mean[a] = points[v, a]
+        for i in near:
+            mean[a] += points[i, a]
+        mean[a] /= k
+    for a in range(3):
+        for b in range(a, 3):
+            total = (points[v, a] - mean[a]) * (points[v, b] - mean[b])
+            for i in near:
+                total += (points[i, a] - mean[a]) * (points[i, b] - mean[b])
+            out[a, b] = out[b, a] = total / k
+
+
+@parallel_kernel
+def plane_normals(points, near, out):
+    """Write the unit normal of the plane of least squares through each point's neighbours; 0 if they lie on a line.
+
+    Nothing is said about its sign.
+    """
+    for v in prange(points.shape[0]):
+        matrix = np.empty((3, 3))
+        covariance(v, near[v], points, matrix)
+        values, vectors = np.linalg.eigh(matrix)
+        determined = values[1] > FLAT * values[2]
+        for a in range(3):
+            out[v, a] = vectors[a, 0] if determined else 0.0
+
+
+@kernel
+def clip(x, y, owner, n, px, py, who, cell, owners):
+    """Keep the part of a convex polygon nearer to 0 than to (px, py); its new number of corners.
+
+    Side j runs from corner j to the next one; the new side belongs to `who`.
+    """
+    limit, m = 0.5 * (px * px + py * py), 0
+    for j in range(n):
+        k = j + 1 if j + 1 < n else 0
+        a, b = x[j] * px + y[j] * py - limit, x[k] * px + y[k] * py - limit
+        if a <= 0.0:
+            cell[0, m], cell[1, m], owners[m] = x[j], y[j], owner[j]
+            m += 1
+        if (a <= 0.0) != (b <= 0.0):
+            t = a / (a - b)
+            cell[0, m], cell[1, m] = x[j] + t * (x[k] - x[j]), y[j] + t * (y[k] - y[j])
+            owners[m] = who if a <= 0.0 else owner[j]
+            m += 1
+    for j in range(m):
+        x[j], y[j], owner[j] = cell[0, j], cell[1, j], owners[j]
+    return m
+
+
+@kernel
+def star_of(v, near, points, normal, plane, work):
+    """Write the owners of the sides of the Voronoi cell of v, around the normal; how many.
+
+    These are the neighbours in the Delaunay triangulation of the points over the tangent plane.
+    """
+    x, y, owner, cell, owners = work
+    t = monge.some_tangent(normal)
+    b = monge.cross(normal, t)
+    far = 0.0
+    for i in range(near.shape[0]):
+        w = near[i]
+        dx, dy, dz = points[w, 0] - points[v, 0], points[w, 1] - points[v, 1], points[w, 2] - points[v, 2]
+        plane[i, 0], plane[i, 1] = t[0] * dx + t[1] * dy + t[2] * dz, b[0] * dx + b[1] * dy + b[2] * dz
+        far = max(far, dx * dx + dy * dy + dz * dz)
+    size = BOX * math.sqrt(far)
+    x[0], x[1], x[2], x[3] = -size, size, size, -size
+    y[0], y[1], y[2], y[3] = -size, -size, size, size
+    owner[:4] = OUTSIDE
+    n = 4
+    for i in range(near.shape[0]):
+        if plane[i, 0] != 0.0 or plane[i, 1] != 0.0:
+            n = clip(x, y, owner, n, plane[i, 0], plane[i, 1], i, cell, owners)
+    return n
+
+
+@parallel_kernel
+def stars(points, normals, near, n_blocks, out, counts, gaps):
+    """Write to out[v] the neighbours of v around its normal, how many, and the widest angle between two of them."""
+    k = near.shape[1]
+    for block in prange(n_blocks):
+        plane = np.empty((k, 2))
+        x, y, cell = np.empty(k + 5), np.empty(k + 5), np.empty((2, k + 5))
+        work = (x, y, np.empty(k + 5, np.intp), cell, np.empty(k + 5, np.intp))
+        n_points = points.shape[0]
+        for v in range(n_points * block // n_blocks, n_points * (block + 1) // n_blocks):
+            normal = (normals[v, 0], normals[v, 1], normals[v, 2])
+            n = star_of(v, near[v], points, normal, plane, work) if normal != (0.0, 0.0, 0.0) else 0
+            counts[v], gaps[v], before, first = 0, 0.0, 0.0, 0.0
+            for j in range(n):
+                i = work[2][j]
+                if i != OUTSIDE:
+                    angle = math.atan2(plane[i, 1], plane[i, 0])
+                    if counts[v] == 0:
+                        first = angle
+                    else:
+                        gaps[v] = max(gaps[v], (angle - before) % (2.0 * math.pi))
+                    before = angle
+                    out[v, counts[v]] = near[v, i]
+                    counts[v] += 1
+            gaps[v] = max(gaps[v], (first - before) % (2.0 * math.pi)) if counts[v] > 1 else 2.0 * math.pi
+
+
+@parallel_kernel
+def star_area_vectors(points, normals, star, counts, out):
+    """Write the sum of the doubled area vectors of the triangles of each star that face the way of the normal."""
+    for v in prange(points.shape[0]):
+        nx, ny, nz = normals[v, 0], normals[v, 1], normals[v, 2]
+        sx = sy = sz = 0.0
+        for j in range(counts[v]):
+            p, q = star[v, j], star[v, (j + 1) % counts[v]]
+            ax, ay, az = points[p, 0] - points[v, 0], points[p, 1] - points[v, 1], points[p, 2] - points[v, 2]
+            bx, by, bz = points[q, 0] - points[v, 0], points[q, 1] - points[v, 1], points[q, 2] - points[v, 2]
+            cx, cy, cz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+            if cx * nx + cy * ny + cz * nz > 0.0:
+                sx, sy, sz = sx + cx, sy + cy, sz + cz
+        out[v, 0], out[v, 1], out[v, 2] = sx, sy, sz
+
+
+@kernel
+def carry_signs(order, parents, normals, signs):
+    """Write to signs the sign that each normal needs to agree with its parent's, whose sign is known before."""
+    for i in range(1, order.shape[0]):
+        v, p = order[i], parents[order[i]]
+        cosine = normals[v, 0] * normals[p, 0] + normals[v, 1] * normals[p, 1] + normals[v, 2] * normals[p, 2]
+        signs[v] = signs[p] if cosine >= 0.0 else -signs[p]

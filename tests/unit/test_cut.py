@@ -1,0 +1,76 @@
+"""Meshes cut open along their creases: sheets, copies, and curvature from one side only."""
+
+import numpy as np
+import pytest
+
+import parts
+import rinow
+import shapes
+from rinow.curvature.cut import cut_along_creases, largest_copies
+
+
+def cut(part):
+    mesh = rinow.TriangleMesh(part.vertices, part.faces)
+    return mesh, *cut_along_creases(mesh)
+
+
+def test_a_box_falls_into_six_sides_and_a_cylinder_into_three():
+    for part, n_sheets in ((parts.box(0.25), 6), (parts.l_shape(0.25), 8), (parts.cylinder(0.2), 3)):
+        mesh, sheets, origin = cut(part)
+        assert sheets.topology.n_components == n_sheets
+        np.testing.assert_array_equal(origin[: mesh.n_vertices], np.arange(mesh.n_vertices))
+        np.testing.assert_array_equal(origin[sheets.faces], mesh.faces)
+        np.testing.assert_array_equal(sheets.vertices, mesh.vertices[origin])
+        # Each copy has faces of one sheet, and a corner of three sheets has three copies.
+        copies = np.bincount(origin)
+        assert set(copies[part.corners]) <= {3}
+        on_crease = np.setdiff1d(part.creases, part.corners)
+        assert (copies[on_crease] == 2).all()
+        assert copies.sum() == len(on_crease) + mesh.n_vertices + 2 * len(part.corners)
+
+
+def test_smooth_meshes_stay_whole():
+    shape = shapes.noisy(shapes.irregular_torus(800), 0.05)
+    mesh, sheets, origin = cut(shape)
+    assert sheets is mesh
+    np.testing.assert_array_equal(origin, np.arange(mesh.n_vertices))
+
+
+def test_given_edges_are_cut_and_unused_vertices_stay():
+    shape = shapes.open_patch(100)
+    V = np.concatenate([shape.vertices, [[9.0, 9.0, 9.0]]])
+    mesh = rinow.TriangleMesh(V, shape.faces)
+    t = mesh.topology
+    across = (mesh.vertices[t.edges][:, :, 0] > 0).sum(axis=1) == 1
+    nothing, origin = cut_along_creases(mesh, np.zeros(t.n_edges, bool))
+    assert nothing is mesh and len(origin) == len(V)
+    all_cut, origin = cut_along_creases(mesh, np.ones(t.n_edges, bool))
+    assert all_cut.topology.n_components == mesh.n_faces
+    assert len(origin) == 3 * mesh.n_faces + 1
+    # Edges that cross a line form no closed curve, but a band of faces between two rows falls apart.
+    some, _ = cut_along_creases(mesh, across)
+    assert some.topology.n_components > 1
+
+
+def test_largest_copies():
+    part = parts.cylinder(0.25, height=4.0)
+    mesh, sheets, origin = cut(part)
+    best = largest_copies(sheets, origin, mesh.n_vertices)
+    np.testing.assert_array_equal(origin[best], np.arange(mesh.n_vertices))
+    areas = sheets.vertex_areas
+    for v in part.creases[:5].ravel():
+        assert areas[best[v]] == areas[origin == v].max()
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_facets_are_flat_and_walls_developable_from_their_own_side(noise):
+    part = parts.noisy(parts.cylinder(0.15), noise)
+    mesh, sheets, origin = cut(part)
+    flat = np.ptp(sheets.vertices[:, 2][sheets.faces], axis=1) < 0.15 * (noise > 0) + 1e-9
+    assert flat.any()
+    curvature = rinow.surface_curvature(sheets, method="sectional")
+    lids = np.unique(sheets.faces[flat & (np.abs(sheets.vertices[:, 2][sheets.faces].mean(axis=1) - 0.75) > 0.7)])
+    inside = lids[~sheets.topology.vertex_is_boundary[lids]]
+    # A flat disk with noise τ in heights over a radius of about four edges h: K of order (τ/(4 h²))².
+    assert np.median(np.abs(curvature.gaussian[inside])) < 1e-6 + 40 * noise
+    assert len(origin) == sheets.n_vertices and len(mesh.vertices) == mesh.n_vertices

@@ -1,0 +1,110 @@
+"""Curvature of points without faces: as good as that of the mesh, invariances, borders, and bad input."""
+
+import numpy as np
+import pytest
+
+import rinow
+import shapes
+from rinow import VertexStatus
+from rinow.curvature.cloud_sheet import cloud_sheet
+from rinow.errors import InvalidInputError
+
+SHAPES = {
+    "ellipsoid": lambda: shapes.irregular_ellipsoid(1500),
+    "torus": lambda: shapes.irregular_torus(1500),
+}
+
+
+def relative(found, exact):
+    return float(np.sqrt(np.mean((found - exact) ** 2) / np.mean(exact**2)))
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02, 0.1])
+@pytest.mark.parametrize("name", SHAPES)
+def test_error_is_at_most_twice_that_of_the_mesh(name, noise):
+    shape = shapes.noisy(SHAPES[name](), noise)
+    mesh = rinow.surface_curvature((shape.vertices, shape.faces), method="sectional")
+    cloud = rinow.point_cloud_curvature(shape.vertices)
+    assert relative(cloud.gaussian, shape.gaussian) <= 2 * relative(mesh.gaussian, shape.gaussian)
+    assert relative(cloud.mean, shape.mean) <= 2 * relative(mesh.mean, shape.mean)
+    assert set(cloud.status) <= {VertexStatus.OK, VertexStatus.BOUNDARY}
+    assert np.mean(cloud.status == VertexStatus.BOUNDARY) < 0.02
+    np.testing.assert_allclose(np.sum(cloud.direction1 * cloud.direction2, axis=1), 0, atol=1e-9)
+    # Two spreads hold as many of the errors as those of the mesh do, up to the scatter between patches.
+    held = [np.mean(np.abs(c.gaussian - shape.gaussian) < 2 * c.spread) for c in (cloud, mesh)]
+    assert held[0] > held[1] - 0.1
+
+
+def test_rows_of_points_five_times_as_near_as_the_rows():
+    u, v = (g.ravel() for g in np.meshgrid(np.linspace(-1, 1, 81), np.linspace(-1, 1, 17), indexing="ij"))
+    cloud = rinow.point_cloud_curvature(np.column_stack([u, v, 0.5 * (u * u - v * v)]))
+    inside = np.maximum(np.abs(u), np.abs(v)) < 0.7
+    exact = -1 / (1 + u * u + v * v) ** 2
+    assert relative(cloud.gaussian[inside], exact[inside]) < 1e-3
+
+
+def test_border_and_sign_of_an_open_patch():
+    shape = shapes.open_patch(900)
+    cloud = rinow.point_cloud_curvature(shape.vertices)
+    on_border = np.abs(shape.vertices[:, :2]).max(axis=1) > 1 - 1e-9
+    assert (cloud.status[on_border] == VertexStatus.BOUNDARY).mean() > 0.9
+    assert (cloud.status[~on_border] == VertexStatus.OK).mean() > 0.98
+    # The sign is the same everywhere, and that of an upward normal at the highest point.
+    far = np.abs(shape.mean) > 0.1
+    assert (np.sign(cloud.mean) == np.sign(shape.mean))[far & ~on_border].all()
+
+
+def test_scaling_motion_and_order():
+    shape = shapes.noisy(shapes.irregular_torus(600), 0.02)
+    cloud = rinow.point_cloud_curvature(shape.vertices)
+    rng = np.random.default_rng(5)
+    order = rng.permutation(len(shape.vertices))
+    for scale in (1e-140, 3.0, 1e140):
+        other = rinow.point_cloud_curvature(scale * shape.vertices[order])
+        # Patches lie elsewhere when the order of ties changes, which there are none of; rounding in the unit is left.
+        np.testing.assert_allclose(other.mean * scale, cloud.mean[order], rtol=1e-6, atol=1e-6)
+    turn = np.array([[0, 0, 1.0], [1, 0, 0], [0, 1, 0]])
+    turned = rinow.point_cloud_curvature(shape.vertices @ turn.T)
+    np.testing.assert_allclose(turned.mean, cloud.mean, rtol=1e-5, atol=1e-5)
+
+
+def test_repeated_and_undefined_points():
+    shape = shapes.irregular_sphere(400)
+    P = np.concatenate([shape.vertices, shape.vertices[:3], [[np.nan, 0, 0]]])
+    cloud = rinow.point_cloud_curvature(P)
+    np.testing.assert_array_equal(cloud.gaussian[400:403], cloud.gaussian[:3])
+    assert cloud.status[-1] == VertexStatus.NONFINITE and np.isnan(cloud.gaussian[-1])
+    alone = rinow.point_cloud_curvature(shape.vertices)
+    np.testing.assert_array_equal(cloud.gaussian[:400], alone.gaussian)
+
+
+def test_radius_is_used():
+    shape = shapes.irregular_sphere(500)
+    cloud = rinow.point_cloud_curvature(shape.vertices, radius=0.5)
+    np.testing.assert_allclose(cloud.radius, 0.5, rtol=1e-9)
+    assert relative(cloud.gaussian, shape.gaussian) < 0.01
+
+
+def test_stars_are_those_of_the_triangulation():
+    shape = shapes.icosphere(3)
+    sheet, at_border = cloud_sheet(shape.vertices)
+    mesh = rinow.TriangleMesh(shape.vertices, shape.faces)
+    assert not at_border.any()
+    np.testing.assert_array_equal(np.diff(sheet.offsets), np.diff(mesh.topology.neighbour_offsets))
+    assert (np.sum(sheet.normals * shape.vertices, axis=1) > 0.99).all()
+
+
+def test_too_few_points_and_lines_are_unresolved():
+    few = rinow.point_cloud_curvature(np.eye(3))
+    assert (few.status == VertexStatus.UNRESOLVED).all() and np.isnan(few.gaussian).all()
+    line = rinow.point_cloud_curvature(np.outer(np.arange(30.0), [1, 2, 3]))
+    assert not np.isfinite(line.gaussian).any()
+    empty = rinow.point_cloud_curvature(np.empty((0, 3)))
+    assert len(empty.gaussian) == 0
+
+
+def test_bad_input():
+    with pytest.raises(InvalidInputError, match="radius = 0 is not a positive length"):
+        rinow.point_cloud_curvature(np.eye(3), radius=0)
+    with pytest.raises(InvalidInputError, match="points has shape"):
+        rinow.point_cloud_curvature(np.eye(2))
