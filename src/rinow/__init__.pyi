@@ -22,6 +22,7 @@ from rinow.curvature.graph import graph_curvature as graph_curvature
 from rinow.curvature.haantjes import arc_length as arc_length
 from rinow.curvature.haantjes import haantjes_curvature as haantjes_curvature
 from rinow.curvature.menger import menger_curvature as menger_curvature
+from rinow.curvature.point_cloud import point_cloud_curvature as point_cloud_curvature
 from rinow.curvature.polar import angle_at as angle_at
 from rinow.curvature.polar import polar_coordinates as polar_coordinates
 from rinow.curvature.regular import regular_radius as regular_radius
@@ -29,7 +30,6 @@ from rinow.curvature.rinow import RinowCurvature as RinowCurvature
 from rinow.curvature.rinow import RinowPointCurvature as RinowPointCurvature
 from rinow.curvature.rinow import rinow_curvature as rinow_curvature
 from rinow.curvature.rinow import rinow_point_curvature as rinow_point_curvature
-from rinow.curvature.point_cloud import point_cloud_curvature as point_cloud_curvature
 from rinow.curvature.singular import SingularFeatures as SingularFeatures
 from rinow.curvature.singular import singular_features as singular_features
 from rinow.curvature.status import VertexStatus as VertexStatus

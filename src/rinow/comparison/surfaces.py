@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from rinow import tolerances
 from rinow.comparison.clock import Clock
 from rinow.errors import NotAMetricError
-from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh
+from rinow.geodesics.edge_graph import edge_graph
+from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh, is_mesh_like
 from rinow.metric_space import as_metric_space
 
 __all__ = ["Sample", "eccentricity_gap", "sample_of"]
@@ -59,13 +60,6 @@ class Sample:
         return low, (own + self.rows).min(axis=0)
 
 
-def is_mesh(thing: Any) -> bool:
-    """Whether something is a mesh, a ``(V, F)`` pair or an object with vertices and faces, not a space or a matrix."""
-    if isinstance(thing, tuple):
-        return len(thing) == 2 and np.ndim(thing[1]) == 2
-    return isinstance(thing, TriangleMesh | IntrinsicMesh) or hasattr(thing, "faces") or hasattr(thing, "regular_faces")
-
-
 def sample_of(thing: Any, clock: Clock) -> Sample:
     """All points of a space or small mesh, or a net of a large mesh that grows while there is time.
 
@@ -76,10 +70,10 @@ def sample_of(thing: Any, clock: Clock) -> Sample:
     NotAMetricError
         If a matrix is not a metric, or the faces of a mesh are not connected.
     """
-    if not is_mesh(thing):
+    if not is_mesh_like(thing):
         D = as_metric_space(thing).distances
         return Sample(np.arange(len(D)), D, D, 0.0)
-    graph, vertices = _edge_graph(as_mesh(thing))
+    graph, vertices = _connected_edges(as_mesh(thing))
     if len(vertices) <= ALL_VERTICES:
         D = dijkstra(graph)
         _check_connected(D[0], vertices)
@@ -100,19 +94,10 @@ def _one_sided(X: Sample, Y: Sample) -> float:
     return max(0.0, max(gaps) - slack)
 
 
-def _edge_graph(mesh: TriangleMesh | IntrinsicMesh) -> tuple[csr_array, Indices]:
-    """The edges of a mesh between the vertices that have a face with finite sides, and these vertices."""
-    lengths, ends = mesh.edge_lengths, np.roll(mesh.faces, -1, axis=1)
-    tails, heads = ends.ravel(), np.roll(ends, -1, axis=1).ravel()
-    finite = np.isfinite(lengths).ravel()
-    vertices, places = np.unique(np.concatenate([tails[finite], heads[finite]]), return_inverse=True)
-    i, j = places.reshape(2, -1)
-    order = np.lexsort((lengths.ravel()[finite], j, i))
-    _, first = np.unique((i * len(vertices) + j)[order], return_index=True)
-    kept = order[first]
-    shape = (len(vertices), len(vertices))
-    half = coo_array((lengths.ravel()[finite][kept], (i[kept], j[kept])), shape=shape).tocsr()
-    return csr_array(half.maximum(half.T)), vertices
+def _connected_edges(mesh: TriangleMesh | IntrinsicMesh) -> tuple[csr_array, Indices]:
+    """The edges of a mesh between the vertices that have a face, and these vertices."""
+    vertices = np.flatnonzero(mesh.topology.vertex_is_used)
+    return csr_array(edge_graph(mesh)[vertices][:, vertices]), vertices
 
 
 def _check_connected(row: Floats, vertices: Indices) -> None:
