@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
+from rinow.curvature.angle_defect import longest_edges, ring_deviations
 from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.patch_tasks import Tasks, add_patches
@@ -230,6 +231,8 @@ def _fill_in(mesh: TriangleMesh, estimate: Estimate) -> None:
     frames = empty_frames(len(rows))
     quadrics.ring_quadrics(rows, stencil_surface(mesh), N_BLOCKS, frames)
     estimate.gaussian[rows] = frames.k1 * frames.k2
+    estimate.radius[rows] = longest_edges(mesh)[rows]
+    estimate.spread[rows] = ring_deviations(mesh, estimate.gaussian)[rows]
     for name in ("k1", "k2", "direction1", "direction2"):
         getattr(estimate, name)[rows] = getattr(frames, name)
     if estimate.mean is not None:

@@ -13,6 +13,8 @@ from rinow.kernels.patch_fits import STEEP, curvature_and_gradients, forms_at_ce
 
 STEEP_CORE = 0.6
 """Largest squared slope of a fit at a vertex of its core."""
+SHARP = 2.0
+"""Curvature, over the inverse spacing, that no mesh resolves: beyond it a fit has failed."""
 FALLEN = 1e-6
 """Weight of a fit whose order had to be lowered."""
 SYMMETRIC = 1.5
@@ -114,8 +116,11 @@ def write_values(u, v, jet, frame, spacing, out):
         return False
     k1, k2 = frame[9] * spacing, frame[10] * spacing
     g11, g12, g22, l, m, n, volume = offset_forms(v, k1, k2, f, f1, f2, f11, f12, f22)
-    out[1] = (l * n - m * m) / (volume * volume) / (spacing * spacing)
-    out[2] = 0.5 * (g22 * l - 2.0 * g12 * m + g11 * n) / (volume * volume) / spacing
+    gaussian = (l * n - m * m) / (volume * volume)
+    mean = 0.5 * (g22 * l - 2.0 * g12 * m + g11 * n) / (volume * volume)
+    if not (abs(mean) < SHARP and abs(gaussian) < SHARP * SHARP):
+        return False
+    out[1], out[2] = gaussian / (spacing * spacing), mean / spacing
     a, b, normal = torus_frame(math.cos(k1 * u), math.sin(k1 * u), math.cos(k2 * v), math.sin(k2 * v))
     e1, e2 = math.sqrt(max(g11 - f1 * f1, 0.0)), 1.0 - k2 * f
     s11, s12, s22 = shape_in_frame(g11, g12, g22, l, m, n, volume)
