@@ -1,4 +1,4 @@
-"""A point cloud as the fits of patches see it: neighbours, normals that agree in sign, and the spacing of the points."""
+"""A point cloud as the fits of patches see it: neighbours, normals of agreeing signs, and the spacing of the points."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Indices = NDArray[np.intp]
 NEAREST = 36
 """Points looked at around each one: five rows of points that are five times as near along a row as across."""
 BORDER_GAP = 2.8
-"""Angle between neighbours, in radians, that tells a border: inside, triangles of a Delaunay triangulation have less."""
+"""Angle between neighbours, in radians, that tells a border: inside, Delaunay triangles have less."""
 
 
 def cloud_sheet(points: Floats) -> tuple[balls.Sheet, Bools]:

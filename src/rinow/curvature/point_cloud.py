@@ -8,14 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow._arrays import as_floats, as_points
+from rinow._executor import SerialExecutor
 from rinow.curvature.cloud_sheet import cloud_sheet
+from rinow.curvature.patch_tasks import Tasks
 from rinow.curvature.scale import Ladder, sample
-from rinow.curvature.sectional import (
-    CALIBRATION,
-    QUALITIES,
-    _blended,  # pyright: ignore[reportPrivateUsage]
-    _shrinkage,  # pyright: ignore[reportPrivateUsage]
-)
+from rinow.curvature.sectional import CALIBRATION, EDGE_RINGS, QUALITIES, blended_patches, rings_around, shrinkage
 from rinow.curvature.status import VertexStatus
 from rinow.curvature.stencils import N_BLOCKS, empty_frames
 from rinow.curvature.surface import SurfaceCurvature
@@ -111,9 +108,11 @@ def _of_distinct(points: Floats, radius: float | None) -> tuple[Floats, Floats, 
     sheet, at_border = cloud_sheet(points)
     quality = QUALITIES["best"]
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
-    samples = sample(sheet, ladder, quality.selects)
-    out, direction1, direction2 = _blended(sheet, ladder, quality, samples)[:3]
-    out[:, 0] *= _shrinkage(samples, out)
+    tasks = Tasks(SerialExecutor())
+    samples = sample(sheet, ladder, quality.selects, tasks)
+    at_edge = rings_around(sheet, at_border, EDGE_RINGS)
+    out, direction1, direction2 = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)[:3]
+    out[:, 0] *= shrinkage(samples, out)
     values = np.column_stack([out[:, 0], out[:, 1], CALIBRATION * np.sqrt(out[:, 2]), out[:, 3]])
     missing = np.flatnonzero(~np.isfinite(values[:, 0]))
     values[missing] = np.nan

@@ -18,8 +18,9 @@ from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, stencil_surface
 from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencils
 from rinow.mesh import TriangleMesh
+from rinow.topology import Topology
 
-__all__ = ["QUALITIES", "sectional"]
+__all__ = ["CALIBRATION", "EDGE_RINGS", "QUALITIES", "blended_patches", "rings_around", "sectional", "shrinkage"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -114,11 +115,10 @@ def sectional(
     if progress is not None:
         tasks.report = lambda share: progress(int(min(share, 0.99) * n), n)
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
-    at_edge = _rings_around(mesh, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
+    at_edge = rings_around(mesh.topology, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
     samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks)
-    out, direction1, direction2, noise = _blended(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
-    shrinkage = _shrinkage(samples, out)
-    out[:, 0] *= shrinkage
+    out, direction1, direction2, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
+    out[:, 0] *= shrinkage(samples, out)
     gaussian, mean, risk, reach = (_spread_out(out[:, i], index, mesh.n_vertices) for i in range(4))
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
     is_flat = _flat_vertices(mesh)
@@ -133,7 +133,7 @@ def sectional(
     return estimate
 
 
-def _blended(
+def blended_patches(
     sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, at_edge: NDArray[np.bool_], tasks: Tasks
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """K, H, risk, radius and order at the vertices of the sheet, principal directions, and variance of the noise."""
@@ -188,7 +188,7 @@ def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints
     )
 
 
-def _shrinkage(samples: Samples, out: Floats) -> Floats:
+def shrinkage(samples: Samples, out: Floats) -> Floats:
     """Positive-part shrinkage of K towards 0, from its mean square and mean risk around the samples."""
     factors, shrinkage = np.empty(len(samples.noise)), np.empty(len(out))
     risks.disc_shrinkage(samples.member_starts, samples.members, out[:, 0], out[:, 2], factors)
@@ -202,16 +202,17 @@ def _flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
     curved = (np.abs(mesh.vertex_angle_defects) > FLAT_DEFECT) & ~t.vertex_is_boundary
     if curved.mean() > 0.99:
         return ~curved & False
-    return ~_rings_around(mesh, curved, FLAT_RINGS)
+    return ~rings_around(t, curved, FLAT_RINGS)
 
 
-def _rings_around(mesh: TriangleMesh, marked: NDArray[np.bool_], n_rings: int) -> NDArray[np.bool_]:
+def rings_around(graph: Topology | balls.Sheet, marked: NDArray[np.bool_], n_rings: int) -> NDArray[np.bool_]:
     """(n_vertices,): a marked vertex is at most so many edges away."""
-    t, count = mesh.topology, marked.astype(np.float64)
+    offsets = graph.neighbour_offsets if isinstance(graph, Topology) else graph.offsets
+    count = marked.astype(np.float64)
     if marked.any():
         for _ in range(n_rings):
             sums = np.empty_like(count)
-            stencils.ring_sums(np.minimum(count, 1.0), t.neighbour_offsets, t.neighbours, sums)
+            stencils.ring_sums(np.minimum(count, 1.0), offsets, graph.neighbours, sums)
             count = sums
     return count > 0.0
 

@@ -75,7 +75,9 @@ def tolerance(first, last, tables, variance, bias, bias_variance):
 
 
 @parallel_kernel
-def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance, jump, resolved, radius, order, risk, logs):
+def least_risks(
+    rows, low, high, reaches, tables, variance, bias, bias_variance, jump, resolved, radius, order, risk, logs
+):
     """Write radius index (-1: none), order and value of the least risk of each centre; logs (n, R, 7) unless empty."""
     for i in prange(len(low)):
         biases = np.empty(N_ORDERS)
