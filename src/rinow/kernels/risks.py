@@ -13,7 +13,7 @@ KAPPA = 0.2
 DECAY = 10.0
 """The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
 EXPLAINED = 3.0
-"""A difference between a large and a small ball is a bias of the large one beyond so many squared errors of the small."""
+"""A difference between a large and a small ball is a bias of the large one beyond so many squared errors."""
 UNSEEN = 0.3
 """Bias, over the inverse square of the radius, of a quadric where nothing is there to compare it with."""
 ROUNDING, MIDDLE = 1e-13, 5.0
@@ -75,7 +75,9 @@ def tolerance(first, last, tables, variance, bias, bias_variance):
 
 
 @parallel_kernel
-def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance, jump, resolved, radius, order, risk, logs):
+def least_risks(
+    rows, low, high, reaches, tables, variance, bias, bias_variance, jump, resolved, radius, order, risk, logs
+):
     """Write radius index (-1: none), order and value of the least risk of each centre; logs (n, R, 7) unless empty."""
     for i in prange(len(low)):
         biases = np.empty(N_ORDERS)
