@@ -49,7 +49,7 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     the positions have next to no noise; with noise the fits, which average over more data, win in any case.
     """
     estimate = sectional(mesh, quality=quality, **options)
-    if quality != "best" or options.get("radius") is not None:
+    if quality != "best" or options.get("radius") is not None or estimate.noise is None or estimate.spacing is None:
         return estimate
     risk = np.square(estimate.spread / CALIBRATION)
     chords = estimate.gaussian**2 * np.square(_chord_errors(mesh, estimate))
@@ -69,6 +69,7 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
 
 def _chord_errors(mesh: TriangleMesh, estimate: Estimate) -> Floats:
     t, errors = mesh.topology, np.empty(mesh.n_vertices)
-    frames = monge.PrincipalFrames(estimate.k1, estimate.k2, estimate.direction1, estimate.direction2, errors[:0, None])
+    principal: list[Any] = [estimate.k1, estimate.k2, estimate.direction1, estimate.direction2]
+    frames = monge.PrincipalFrames(*principal, errors[:0, None])
     curves.chord_errors(mesh.vertices, t.neighbour_offsets, t.neighbours, frames, errors)
     return errors

@@ -58,7 +58,10 @@ class Fitting:
         """Run the kernel on a part of the centres."""
         c = self.centres
         rows = c.rows[part.start : part.stop + 1] - c.rows[part.start]
-        own = patch_driver.Centres(*(x[part] for x in c[:6]), rows, c.noise[part])
+        own = patch_driver.Centres(
+            c.vertices[part], c.frames[part], c.low[part], c.high[part], c.factors[part], c.orders[part], rows,
+            c.noise[part],
+        )  # fmt: skip
         patch_driver.treat_all(
             self.task, self.is_mean, self.reaches, self.most, N_BLOCKS, own, self.sheet, tables, frames, out
         )
@@ -67,7 +70,7 @@ class Fitting:
 def fill_tables(fitting: Fitting, known: bool, tasks: Tasks, share: float) -> patch_fits.Tables:
     """The tables of all centres."""
     rows = fitting.centres.rows
-    tables = _empty_tables(rows[-1], known)
+    tables = _empty_tables(int(rows[-1]), known)
     for part, found in tasks.run(partial(_tables_of, fitting, known), _parts(len(rows) - 1), share):
         for whole, piece in zip(tables, found, strict=True):
             whole[rows[part.start] : rows[part.stop]] = piece
@@ -76,7 +79,7 @@ def fill_tables(fitting: Fitting, known: bool, tasks: Tasks, share: float) -> pa
 
 def _tables_of(fitting: Fitting, known: bool, part: slice) -> patch_fits.Tables:
     rows = fitting.centres.rows
-    tables = _empty_tables(rows[part.stop] - rows[part.start], known)
+    tables = _empty_tables(int(rows[part.stop] - rows[part.start]), known)
     fitting.of(part, tables, NO_FRAMES, NO_PATCHES)
     return tables
 

@@ -188,9 +188,8 @@ def _least(
     bias, bias_variance, jump = (_averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance, tables.jump))
     variance = _averaged(tables.variance, *place, 1)
     choice = _empty_choice(len(spacing))
-    risks.least_risks(
-        rows, low, high, ladder.reaches, tables, variance, bias, bias_variance, jump, RESOLVED**power, *choice, logs
-    )
+    averages = (variance, bias, bias_variance, jump)
+    risks.least_risks(rows, low, high, ladder.reaches, tables, *averages, RESOLVED**power, *choice, logs)
     return choice._replace(risk=choice.risk / spacing**power)
 
 

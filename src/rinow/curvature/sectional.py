@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
-from rinow.curvature.angle_defect import longest_edges, ring_deviations
+from rinow.curvature.angle_defect import longest_edges
 from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.patch_tasks import Tasks, add_patches
@@ -36,7 +36,7 @@ FLAT_RINGS = 3
 CALIBRATION = 1.25
 """Standard error over the root of the least risk: the noise is the least of many estimates, the fit the best."""
 EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 3, 4
-"""Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, and worse placed."""
+"""Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, worse placed."""
 AROUND = 2.2
 """Radius of these centres around, in radii a patch covers."""
 
@@ -233,7 +233,7 @@ def _fill_in(mesh: TriangleMesh, estimate: Estimate) -> None:
     quadrics.ring_quadrics(rows, stencil_surface(mesh), N_BLOCKS, frames)
     estimate.gaussian[rows] = frames.k1 * frames.k2
     estimate.radius[rows] = longest_edges(mesh)[rows]
-    estimate.spread[rows] = ring_deviations(mesh, estimate.gaussian)[rows]
+    estimate.spread[rows] = np.nan
     for name in ("k1", "k2", "direction1", "direction2"):
         getattr(estimate, name)[rows] = getattr(frames, name)
     if estimate.mean is not None:

@@ -13,7 +13,7 @@ KAPPA = 0.2
 DECAY = 10.0
 """The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
 EXPLAINED = 3.0
-"""A difference between a large and a small ball is a bias of the large one beyond so many squared errors of the small."""
+"""A difference between a large and a small ball is a bias of the large one beyond so many squared errors."""
 UNSEEN = 0.3
 """Bias, over the inverse square of the radius, of a quadric where nothing is there to compare it with."""
 ROUNDING, MIDDLE = 1e-13, 5.0
