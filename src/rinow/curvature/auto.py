@@ -69,7 +69,7 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
 
 def _chord_errors(mesh: TriangleMesh, estimate: Estimate) -> Floats:
     t, errors = mesh.topology, np.empty(mesh.n_vertices)
-    principal: list[Any] = [estimate.k1, estimate.k2, estimate.direction1, estimate.direction2]
-    frames = monge.PrincipalFrames(*principal, errors[:0, None])
+    known: Any = estimate
+    frames = monge.PrincipalFrames(known.k1, known.k2, known.direction1, known.direction2, errors[:0, None])
     curves.chord_errors(mesh.vertices, t.neighbour_offsets, t.neighbours, frames, errors)
     return errors
