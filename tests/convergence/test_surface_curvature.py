@@ -47,8 +47,9 @@ def test_fits_converge_with_the_orders_they_choose(surface):
     if surface == "sphere":
         assert max(*e, *mean) < 1e-11
     else:
-        assert order(e) > 4
-        assert order(mean) > 4
+        least = 3 if surface == "saddle" else 4  # one-sided balls beside the boundary decide there
+        assert order(e) > least
+        assert order(mean) > least
         assert e[-1] < 1e-4
 
 
