@@ -9,6 +9,7 @@ import numpy as np
 from rinow.curvature.estimate import Estimate, Floats
 from rinow.curvature.intrinsic import intrinsic_curvature
 from rinow.curvature.sectional import CALIBRATION, sectional
+from rinow.curvature.unresolved import with_detail
 from rinow.kernels import curves, monge
 from rinow.mesh import TriangleMesh
 
@@ -45,10 +46,15 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     :math:`(K \max_e (\kappa_e c_e)^2/12)^2` for the chords c of normal curvature κ that stand for geodesics, which edge
     lengths alone cannot show.  The weights are the inverse squared errors.
 
+    Where fits call detail noise that stars of neighbouring vertices have in common, the stars are taken
+    (`rinow.curvature.unresolved`).
+
     Edge lengths are examined only if this last term leaves room for a gain at some two percent of the vertices and
     the positions have next to no noise; with noise the fits, which average over more data, win in any case.
     """
     estimate = sectional(mesh, quality=quality, **options)
+    if options.get("radius") is None:
+        estimate = with_detail(mesh, estimate)
     if quality != "best" or options.get("radius") is not None or estimate.noise is None or estimate.spacing is None:
         return estimate
     risk = np.square(estimate.spread / CALIBRATION)
