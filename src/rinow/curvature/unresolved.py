@@ -21,9 +21,9 @@ NOISY = 0.005
 WHITE, DETAIL = 0.05, 0.3
 """Correlation of neighbours up to which a residual is noise, and from which it is detail."""
 PASSES = 10
-"""Averages over rings of neighbours: some hundred vertices decide together."""
-LARGEST = 1.0
-"""Residuals over the inverse of the spacing are cut at this: beyond it no mesh resolves a curvature."""
+"""Averages over rings of neighbours: some hundred vertices decide together, if their component as a whole agrees."""
+LARGEST = 3.0
+"""Residuals are cut at this multiple of their median modulus, lest a few bad stars decide."""
 
 
 def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
@@ -53,10 +53,17 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
 def _detail_share(mesh: TriangleMesh, residual: Floats) -> Floats:
     """(n_vertices,): 0 where the residual is like noise, 1 where neighbours have it in common."""
     known = np.isfinite(residual) & ~mesh.topology.vertex_is_boundary
-    r = np.where(known, np.clip(residual, -LARGEST, LARGEST), 0.0)
-    others = _ring_means(mesh, r, 1, itself=False)
-    covariance, variance = _ring_means(mesh, r * others, PASSES), _ring_means(mesh, r * r, PASSES)
-    correlation = np.divide(covariance, variance, out=np.zeros_like(r), where=variance > 0.0)
+    largest = LARGEST * float(np.median(np.abs(residual[known]))) if known.any() else 0.0
+    r = np.where(known, np.clip(residual, -largest, largest), 0.0)
+    product, square = r * _ring_means(mesh, r, 1, itself=False), r * r
+    near = _share_of(_ring_means(mesh, product, PASSES), _ring_means(mesh, square, PASSES))
+    component = mesh.topology.components + 1
+    whole = _share_of(*(np.bincount(component, x).astype(np.float64) for x in (product, square)))
+    return np.minimum(near, whole[component])
+
+
+def _share_of(covariance: Floats, variance: Floats) -> Floats:
+    correlation = np.divide(covariance, variance, out=np.zeros_like(variance), where=variance > 0.0)
     return np.clip((correlation - WHITE) / (DETAIL - WHITE), 0.0, 1.0)
 
 
