@@ -79,6 +79,14 @@ def test_a_point_cloud_needs_no_faces(folder, capfd):
     assert json.loads(out)["directed_a"] == [1.0, 1.0]
 
 
+def test_surfaces_as_metric_spaces(folder, capfd):
+    code, out, _ = run(capfd, "compare", "a.ply", "a.ply", "--metric", "gromov-hausdorff", "--json")
+    record = json.loads(out)
+    assert code == 0
+    assert record["lower"] == record["upper"] == 0.0
+    assert record["notes"] == ["distances on the surfaces are lengths of shortest paths along edges."]
+
+
 def test_distance_matrices(folder, capfd):
     code, out, err = run(capfd, "compare", "d.npz", "e.npy", "--distances", "--json", "-o", "pairs.csv")
     assert (code, err) == (0, "")

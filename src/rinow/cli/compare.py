@@ -77,6 +77,8 @@ def compare(
         )
     notes = [note for shape in shapes if isinstance(shape, TriangleMesh) for note in shape.notes]
     notes += _write(output, study, shapes)
+    if kind == "surfaces" and distance == "gromov-hausdorff":
+        notes.append("distances on the surfaces are lengths of shortest paths along edges.")
     record = {"a": str(a), "b": str(b), **study.record()}
     if json:
         print_json({"rinow": __version__, **record, "outputs": [str(path) for path in output], "notes": notes})
