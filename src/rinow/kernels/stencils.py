@@ -10,6 +10,9 @@ from rinow.kernels._jit import kernel, parallel_kernel, prange
 
 SOFTENING = 0.01
 """Added to squared distances, in squared radii of the stencil: two vertices that nearly coincide tell no curvature."""
+FACING = 0.2
+"""Least cosine between the normals of a vertex and those of its second ring that are fitted with it: what is turned
+further is no graph over the tangent plane."""
 QUADRIC_POINTS = 7
 """Fewer points than this leave the tangent plane as it is: their circles are fitted by Euler's formula alone."""
 HUB = 100
@@ -144,6 +147,20 @@ def two_rings(v, surface, members, marks):
     for m in range(1, n):
         reach = max(reach, squared_distance(surface.vertices, v, members[m]))
     return n, reach
+
+
+@kernel
+def facing(members, n, normal, surface):
+    """Keep of the members v, its neighbours, and those whose normals are turned little from that of v; how many."""
+    x, y, z = normal
+    kept = min(n, 1 + surface.offsets[members[0] + 1] - surface.offsets[members[0]])
+    for m in range(kept, n):
+        nx, ny, nz = surface.normals[members[m]]
+        cosine = x * nx + y * ny + z * nz
+        if cosine > FACING or (not surface.is_oriented and cosine < -FACING):
+            members[kept] = members[m]
+            kept += 1
+    return kept
 
 
 @kernel
