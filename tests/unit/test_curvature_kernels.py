@@ -103,7 +103,7 @@ def test_stencils_are_the_sets_they_are_named_after():
 
 def test_quadric_equals_orthogonalised_least_squares():
     surface, frames = stencil_surface(MESH), empty_frames(len(CHOSEN))
-    quadrics.ring_quadrics(np.array(CHOSEN), surface, 4, frames)
+    quadrics.ring_quadrics(np.array(CHOSEN), surface, False, 4, frames)
     for row, v in enumerate(CHOSEN):
         members = sorted(naive_jets.two_rings(F, v))
         size = max(np.linalg.norm(np.array(V[w]) - V[v]) for w in members)
@@ -140,7 +140,7 @@ def test_lifted_metric_has_the_total_curvature_of_the_surface():
     for name, shape in shapes.closed_shapes().items():
         mesh = TriangleMesh(shape.vertices, shape.faces)
         surface, frames = stencil_surface(mesh), empty_frames(mesh.n_vertices)
-        quadrics.ring_quadrics(np.arange(mesh.n_vertices), surface, 4, frames)
+        quadrics.ring_quadrics(np.arange(mesh.n_vertices), surface, False, 4, frames)
         lengths = np.empty((mesh.n_faces, 3))
         curves.lifted_edge_lengths(mesh.vertices, mesh.faces, frames.normals, mesh.edge_lengths, lengths)
         s = lengths.sum(axis=1) / 2

@@ -48,7 +48,7 @@ def lifted(mesh: TriangleMesh) -> Estimate:
     t = mesh.topology
     surface = stencil_surface(mesh)
     frames = empty_frames(mesh.n_vertices)
-    quadrics.ring_quadrics(np.arange(mesh.n_vertices), surface, N_BLOCKS, frames)
+    quadrics.ring_quadrics(np.arange(mesh.n_vertices), surface, False, N_BLOCKS, frames)
     is_closed = t.vertex_is_manifold & ~t.vertex_is_boundary
     gaussian = _metric_curvature(mesh, frames.normals, is_closed, frames.k1 * frames.k2)
     mean = 0.5 * (frames.k1 + frames.k2)

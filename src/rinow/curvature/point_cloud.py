@@ -119,7 +119,7 @@ def _of_distinct(points: Floats, radius: float | None) -> tuple[Floats, Floats, 
     if len(missing) and radius is None:
         frames = empty_frames(len(missing))
         rings = stencils.Surface(sheet.vertices, sheet.normals, sheet.offsets, sheet.neighbours, True)
-        quadrics.ring_quadrics(missing, rings, N_BLOCKS, frames)
+        quadrics.ring_quadrics(missing, rings, True, N_BLOCKS, frames)
         values[missing, 0], values[missing, 1] = frames.k1 * frames.k2, 0.5 * (frames.k1 + frames.k2)
         direction1[missing], direction2[missing] = frames.direction1, frames.direction2
     return values, np.stack([direction1, direction2]), at_border

@@ -230,7 +230,7 @@ def _fill_in(mesh: TriangleMesh, estimate: Estimate) -> None:
     if not len(rows):
         return
     frames = empty_frames(len(rows))
-    quadrics.ring_quadrics(rows, stencil_surface(mesh), N_BLOCKS, frames)
+    quadrics.ring_quadrics(rows, stencil_surface(mesh), True, N_BLOCKS, frames)
     estimate.gaussian[rows] = frames.k1 * frames.k2
     estimate.radius[rows] = longest_edges(mesh)[rows]
     estimate.spread[rows] = np.nan

@@ -100,7 +100,8 @@ def ring_quadrics(rows, surface, n_blocks, frames):
             v = rows[row]
             size, reach = stencils.two_rings(v, surface, members, marks)
             normal, unit = stencils.normal_at(v, surface), math.sqrt(reach)
-            size = stencils.facing(members, size, normal, surface)
+            if is_small:
+                size = stencils.facing(members, size, normal, surface)
             fitted, tangent = False, normal
             if unit > 0.0 and normal != (0.0, 0.0, 0.0):
                 tangent = stencils.local_coordinates(members, size, unit, normal, surface.vertices, points)
