@@ -384,6 +384,6 @@ def test_result_is_frozen_pickles_and_shows_itself():
 def test_an_icosahedron_has_the_curvature_of_its_sphere():
     # Two rings reach around it: what faces away must not be fitted.
     V, F = shapes.icosphere(0, radius=2.0)[:2]
-    curvature = rinow.surface_curvature((V, F))
+    curvature = surface_curvature((V, F))
     np.testing.assert_allclose(curvature.gaussian, 0.25, rtol=1e-9)
     np.testing.assert_allclose(curvature.mean, 0.5, rtol=1e-9)

@@ -90,8 +90,11 @@ def fit_quadric(points, n, coefficients):
 
 
 @parallel_kernel
-def ring_quadrics(rows, surface, n_blocks, frames):
-    """Write the principal frames of quadrics fitted to two rings of rows[i]; nan, and the given normal, without one."""
+def ring_quadrics(rows, surface, is_small, n_blocks, frames):
+    """Write principal frames of quadrics fitted to two rings of rows[i]; nan, and the given normal, without one.
+
+    On a small surface the rings may reach around it: there, what faces away is left out.
+    """
     n_vertices, n = surface.vertices.shape[0], len(rows)
     for block in prange(n_blocks):
         members, marks = np.empty(n_vertices + 1, np.int32), np.zeros(n_vertices, np.int32)
