@@ -1,6 +1,7 @@
 """surface_curvature: closed forms, statuses, faults of meshes, errors."""
 
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 import shapes
 from rinow import IntrinsicMesh, InvalidInputError, InvalidMeshError, TriangleMesh, VertexStatus, surface_curvature
+from rinow.curvature import patch_tasks
 
 METHODS = ("sectional", "lifted", "wald", "angle_defect")
 WITH_POSITIONS = ("sectional", "lifted")
@@ -361,6 +363,15 @@ def test_methods_that_need_positions_say_so(method):
     assert isinstance(mesh, IntrinsicMesh)
     with pytest.raises(InvalidMeshError, match="positions are needed"):
         surface_curvature(mesh, method=method)
+
+
+def test_tasks_and_executor_change_nothing(monkeypatch):
+    expected = curvature(SPHERE, method="sectional")
+    monkeypatch.setattr(patch_tasks, "CENTRES_PER_TASK", 100)
+    with ThreadPoolExecutor(1) as pool:
+        c = curvature(SPHERE, method="sectional", executor=pool)
+    np.testing.assert_array_equal(c.gaussian, expected.gaussian)
+    np.testing.assert_array_equal(c.direction1, expected.direction1)
 
 
 def test_progress_ends_with_all_vertices():
