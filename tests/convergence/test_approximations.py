@@ -11,13 +11,15 @@ from rinow.report.convergence import convergence_figure
 from rinow.study.convergence import COLUMNS, study_meshes, study_nets
 from shapes import box, icosphere, irregular_sphere, two_components
 
+pytestmark = pytest.mark.usefixtures("compiled_searches")
+
 
 @pytest.fixture(scope="module")
 def spheres():
     meshes = [icosphere(k) for k in range(3)]
     limit = icosphere(4)
     return study_meshes(
-        [(m.vertices, m.faces) for m in meshes], (limit.vertices, limit.faces), net_size=6, max_points=200, time_limit=2
+        [(m.vertices, m.faces) for m in meshes], (limit.vertices, limit.faces), net_size=6, max_points=200, time_limit=4
     )
 
 
@@ -61,7 +63,7 @@ def test_table_and_plot(spheres):
 def test_a_mesh_is_at_distance_0_from_itself():
     shape = irregular_sphere(60)
     mesh = shape.vertices, shape.faces
-    study = study_meshes([mesh], mesh, net_size=5, time_limit=2)
+    study = study_meshes([mesh], mesh, net_size=5, time_limit=4)
     assert study.hausdorff[0, 1] == 0.0
     assert study.net_gromov_hausdorff[0, 1] == study.net_lipschitz[0, 1] == 0.0
     # all vertices are in the net: only the insides of the faces remain

@@ -10,6 +10,8 @@ import rinow
 from naive.nets import circle
 from shapes import icosphere, irregular_sphere
 
+pytestmark = pytest.mark.usefixtures("compiled_searches")
+
 SEGMENT = [[0, 1, 2]]
 
 
