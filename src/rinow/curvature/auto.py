@@ -19,6 +19,8 @@ QUIET = 1e-3
 """Noise of the positions, in spacings, up to which edge lengths may tell more than positions."""
 WORTH = 0.02
 """Share of the vertices that must be able to gain before the edge lengths are examined."""
+LARGEST_BALL = 4
+"""Steps of the largest ball of edge lengths that is examined: on quiet structured meshes small ones win."""
 
 
 def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estimate:
@@ -63,11 +65,10 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     if np.count_nonzero(hopeful) < WORTH * mesh.n_vertices:
         return estimate
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = intrinsic_curvature(mesh)
+        found = intrinsic_curvature(mesh, most_steps=LARGEST_BALL)
     other = found.variance + found.squared_bias + chords
-    weight = np.where(hopeful & np.isfinite(other) & np.isfinite(found.gaussian), 1.0 / other, 0.0)
-    own = 1.0 / risk
-    share = np.divide(weight, weight + own, out=np.zeros_like(weight), where=weight > 0.0)
+    hopeful &= np.isfinite(other) & np.isfinite(found.gaussian)
+    share = np.divide(risk, risk + other, out=np.zeros_like(risk), where=hopeful & (risk > 0.0))
     step = np.where(share > 0.0, share * (found.gaussian - estimate.gaussian), 0.0)
     spread = CALIBRATION * np.sqrt(np.where(share > 0.5, other, risk))
     return estimate.with_gaussian(estimate.gaussian + step, spread)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from math import comb
 
@@ -35,6 +36,8 @@ SUPPORT = 10.0
 """Squared radius of the ball over the variance of the weights (1 - (d/radius)²)³ in it along one axis."""
 FLAT_RINGS, FLAT_DEFECT = 3, 1e-10
 """A vertex with defects below this within so many rings is flat."""
+IDLE = 2
+"""Scales in a row without a smaller error at any vertex after which larger ones are left out."""
 FLOOR = 0.1
 """Share of the variance of a comparison that its square cannot be told from: least squared bias."""
 
@@ -95,7 +98,9 @@ class Powers:
 NEEDED = frozenset(j * m for m in LADDER for j in range(1, ORDER + 2))
 
 
-def intrinsic_curvature(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None) -> IntrinsicCurvature:
+def intrinsic_curvature(
+    mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None, most_steps: int = LADDER[-1]
+) -> IntrinsicCurvature:
     """Gaussian curvature from edge lengths, with variance and squared bias; see `intrinsic`.
 
     Parameters
@@ -104,6 +109,8 @@ def intrinsic_curvature(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | N
         The surface; only edge lengths are used.
     radius : float, optional
         Radius of the balls in units of length, or the nearest to it that competes; by default the best of all.
+    most_steps : int, optional
+        Largest scale that competes, in steps of the flow.
 
     Returns
     -------
@@ -117,11 +124,14 @@ def intrinsic_curvature(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | N
     n = mesh.n_vertices
     best = IntrinsicCurvature(np.full(n, np.nan), np.full(n, np.inf), np.zeros(n), np.zeros(n))
     wanted = None if radius is None else _nearest_rung(radius, noise)
-    for m in LADDER:
+    idle = 0
+    for m in LADDER[: bisect_right(LADDER, most_steps)]:
         here = None if wanted is None else wanted == m
         if here is None or here.any():
-            for candidate in _candidates(m, flow, noise, powers, tau2):
-                _improve(best, candidate, here)
+            improved = [_improve(best, candidate, here) for candidate in _candidates(m, flow, noise, powers, tau2)]
+            idle = 0 if any(improved) else idle + 1
+        if idle == IDLE and here is None:
+            break
         powers.forget(m + 1)
     best.gaussian[_is_flat(flow) & np.isfinite(best.gaussian)] = 0.0
     _shrink(best, flow)
@@ -196,13 +206,14 @@ def _difference(a: dict[int, float], b: dict[int, float]) -> dict[int, float]:
     return {k: a.get(k, 0.0) - b.get(k, 0.0) for k in {*a, *b}}
 
 
-def _improve(best: IntrinsicCurvature, candidate: IntrinsicCurvature, where: NDArray[np.bool_] | None) -> None:
-    """Take the candidate wherever its predicted squared error is smaller."""
+def _improve(best: IntrinsicCurvature, candidate: IntrinsicCurvature, where: NDArray[np.bool_] | None) -> bool:
+    """Take the candidate wherever its predicted squared error is smaller; whether it is anywhere."""
     better = candidate.variance + candidate.squared_bias < best.variance + best.squared_bias
     if where is not None:
         better &= where
     for name in ("gaussian", "variance", "squared_bias", "radius"):
         getattr(best, name)[better] = getattr(candidate, name)[better]
+    return bool(better.any())
 
 
 def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None) -> Estimate:
