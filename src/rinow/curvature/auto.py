@@ -17,8 +17,11 @@ __all__ = ["auto"]
 
 QUIET = 1e-3
 """Noise of the positions, in spacings, up to which edge lengths may tell more than positions."""
-WORTH = 0.02
+WORTH = {"best": 0.02, "fast": 0.3}
 """Share of the vertices that must be able to gain before the edge lengths are examined."""
+RESOLVED, FLAT = 3e-4, 1e-3
+"""Expected error of K, in units of the larger squared curvature, but at least (FLAT/spacing)², below which edge lengths
+have nothing to add."""
 LARGEST_BALL = 4
 """Steps of the largest ball of edge lengths that is examined: on quiet structured meshes small ones win."""
 
@@ -31,7 +34,7 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     mesh : TriangleMesh
         The surface.
     quality : {"best", "fast"}, optional
-        With "fast" edge lengths are not examined.
+        With "fast" fewer radii compete, and edge lengths only where much of the mesh may gain.
     **options
         As for `sectional`.
 
@@ -51,18 +54,21 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     Where fits call detail noise that stars of neighbouring vertices have in common, the stars are taken
     (`rinow.curvature.unresolved`).
 
-    Edge lengths are examined only if this last term leaves room for a gain at some two percent of the vertices and
-    the positions have next to no noise; with noise the fits, which average over more data, win in any case.
+    Edge lengths are examined only if this last term leaves room for a gain at some two percent of the vertices (with
+    "fast", a third), if fits are not accurate to the fourth digit anyway, and if the positions have next to no noise;
+    with noise the fits, which average over more data, win in any case.
     """
     estimate = sectional(mesh, quality=quality, **options)
     if options.get("radius") is None:
         estimate = with_detail(mesh, estimate)
-    if quality != "best" or options.get("radius") is not None or estimate.noise is None or estimate.spacing is None:
+    if options.get("radius") is not None or estimate.noise is None or estimate.spacing is None:
         return estimate
     risk = np.square(estimate.spread / CALIBRATION)
     chords = estimate.gaussian**2 * np.square(_chord_errors(mesh, estimate))
-    hopeful = (chords < risk) & (estimate.noise < QUIET * estimate.spacing) & ~mesh.topology.vertex_is_boundary
-    if np.count_nonzero(hopeful) < WORTH * mesh.n_vertices:
+    largest = np.fmax(np.fmax(np.abs(estimate.k1), np.abs(estimate.k2)), FLAT / estimate.spacing)
+    hopeful = (risk > np.fmax(chords, (RESOLVED * largest**2) ** 2)) & (estimate.noise < QUIET * estimate.spacing)
+    hopeful &= ~mesh.topology.vertex_is_boundary
+    if np.count_nonzero(hopeful) < WORTH[quality] * mesh.n_vertices:
         return estimate
     with np.errstate(divide="ignore", invalid="ignore"):
         found = intrinsic_curvature(mesh, most_steps=LARGEST_BALL)

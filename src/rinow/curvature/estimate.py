@@ -40,8 +40,15 @@ class Estimate:
     spacing: Floats | None = None
 
     def with_gaussian(self, gaussian: Floats, spread: Floats) -> Estimate:
-        """The same with another Gaussian curvature: k1 and k2 have it as their product, the mean stays."""
+        """The same with another Gaussian curvature: k1 and k2 have it as their product.
+
+        To first order they take the shortest step there, so that H moves by H ΔK / (k1² + k2²).
+        """
         if self.mean is None:
             return replace(self, gaussian=gaussian, spread=spread)
-        half = np.sqrt(np.maximum(self.mean * self.mean - gaussian, 0.0))
-        return replace(self, gaussian=gaussian, spread=spread, k1=self.mean + half, k2=self.mean - half)
+        squares = 4.0 * self.mean * self.mean - 2.0 * self.gaussian
+        step = gaussian - self.gaussian
+        share = np.divide(step, squares, out=np.zeros_like(step), where=np.abs(step) < squares)
+        mean = self.mean * (1.0 + share)
+        half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
+        return replace(self, gaussian=gaussian, spread=spread, mean=mean, k1=mean + half, k2=mean - half)
