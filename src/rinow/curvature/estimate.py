@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,3 +45,8 @@ class Estimate:
             return replace(self, gaussian=gaussian, spread=spread)
         half = np.sqrt(np.maximum(self.mean * self.mean - gaussian, 0.0))
         return replace(self, gaussian=gaussian, spread=spread, k1=self.mean + half, k2=self.mean - half)
+
+    def at(self, vertices: NDArray[np.intp]) -> Estimate:
+        """The values at some vertices, in their order."""
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        return Estimate(**{name: value if value is None else value[vertices] for name, value in values.items()})

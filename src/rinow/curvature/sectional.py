@@ -121,13 +121,14 @@ def sectional(
     out[:, 0] *= shrinkage(samples, out)
     gaussian, mean, risk, reach = (_spread_out(out[:, i], index, mesh.n_vertices) for i in range(4))
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
-    is_flat = _flat_vertices(mesh)
-    gaussian[is_flat & np.isfinite(gaussian)] = 0.0
     noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
     spread, half = CALIBRATION * np.sqrt(risk), np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
     if radius is None:
         _fill_in(mesh, estimate)
+    is_flat = _flat_vertices(mesh) & np.isfinite(gaussian)
+    gaussian[is_flat] = 0.0
+    estimate.k1[is_flat], estimate.k2[is_flat] = np.maximum(2.0 * mean[is_flat], 0.0), np.minimum(2.0 * mean[is_flat], 0.0)
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
     return estimate

@@ -1,0 +1,75 @@
+"""Curvature of vertices between flat facets, as CAD models have them: their meshes have vertices on feature lines only."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.curvature.creases import EdgeTurnings
+from rinow.curvature.estimate import Estimate
+from rinow.kernels import facet_stars
+from rinow.mesh import TriangleMesh
+
+__all__ = ["take_facets"]
+
+Floats = NDArray[np.float64]
+
+POSITION_ROUNDING = 4.0 * 2.0**-24
+"""Error of positions over the size of the mesh: files keep 24 bits."""
+
+
+def take_facets(mesh: TriangleMesh, estimate: Estimate, rows: NDArray[np.intp]) -> None:
+    r"""Write the curvature of prisms and flat facets into an estimate.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface, cut open along its creases.
+    estimate : Estimate
+        Its curvature; changed in place at those of the rows whose star has coplanar faces and bends along at most one
+        line.
+    rows : (k,) ndarray of intp
+        Vertices to look at.
+
+    Notes
+    -----
+    Such a star is isometric to a part of the plane, K = 0.  A facet of a prism inscribed in a cylinder of radius R has
+    the height h over the edge where it meets the next one; with the angle θ between both,
+
+    .. math:: \frac{1}{R} = \frac{2 \sin θ}{\sqrt{h_1^2 + h_2^2 + 2 h_1 h_2 \cos θ}}
+
+    is the Menger curvature of three points of the section across that edge, exact for any two heights.
+    """
+    if estimate.mean is None or estimate.k1 is None or estimate.k2 is None or not len(rows):
+        return
+    t, turnings = mesh.topology, EdgeTurnings(mesh)
+    rounding = POSITION_ROUNDING * mesh.diagonal * turnings.gains
+    across, lines = np.empty(len(rows)), np.empty(len(rows), np.intp)
+    facet_stars.facet_stars(
+        rows, np.nan_to_num(turnings.turnings), rounding, turnings.edge_of_halfedge, turnings.halfedges, t.partners,
+        mesh.vertices, mesh.faces, t.corner_offsets, t.vertex_corners, t.edges, across, lines,
+    )  # fmt: skip
+    is_facet = np.isfinite(across)
+    rows, across, lines = rows[is_facet], across[is_facet], lines[is_facet]
+    estimate.gaussian[rows] = estimate.spread[rows] = 0.0
+    estimate.mean[rows] = 0.5 * across
+    estimate.k1[rows], estimate.k2[rows] = np.maximum(across, 0.0), np.minimum(across, 0.0)
+    bent = lines >= 0
+    _turn_directions(mesh, estimate, rows[bent], across[bent], t.edges[lines[bent]])
+
+
+def _turn_directions(
+    mesh: TriangleMesh, estimate: Estimate, rows: NDArray[np.intp], across: Floats, edges: NDArray[np.intp]
+) -> None:
+    """The principal directions along and across the edges."""
+    if estimate.direction1 is None or estimate.direction2 is None:
+        return
+    along = mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]]
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    sideways = np.cross(mesh.vertex_normals[rows], along)
+    lengths = np.linalg.norm(sideways, axis=1)
+    rows, along, sideways, across = (x[lengths > 0.0] for x in (rows, along, sideways, across))
+    sideways /= lengths[lengths > 0.0, None]
+    convex = (across > 0.0)[:, None]
+    estimate.direction1[rows] = np.where(convex, sideways, along)
+    estimate.direction2[rows] = np.where(convex, along, sideways)
