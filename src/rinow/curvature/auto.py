@@ -65,7 +65,8 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     with np.errstate(divide="ignore", invalid="ignore"):
         found = intrinsic_curvature(mesh)
     other = found.variance + found.squared_bias + chords
-    weight = np.where(hopeful & np.isfinite(other) & np.isfinite(found.gaussian), 1.0 / other, 0.0)
+    useful = hopeful & (other > 0.0) & np.isfinite(other) & np.isfinite(found.gaussian)
+    weight = np.divide(1.0, other, out=np.zeros_like(other), where=useful)
     own = 1.0 / risk
     share = np.divide(weight, weight + own, out=np.zeros_like(weight), where=weight > 0.0)
     step = np.where(share > 0.0, share * (found.gaussian - estimate.gaussian), 0.0)

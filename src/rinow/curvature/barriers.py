@@ -62,7 +62,7 @@ def _bounds_strips(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLine
     """(n_edges,): both faces of a flat crease have all their vertices on creases."""
     on_crease = np.zeros(mesh.n_vertices, np.bool_)
     on_crease[mesh.topology.edges[lines.is_crease]] = True
-    is_strip = on_crease[mesh.faces].all(axis=1)
+    is_strip: Bools = np.all(on_crease[mesh.faces], axis=1, keepdims=False)
     h = turnings.halfedges
     other = mesh.topology.partners[h]
     return (np.abs(lines.angles) < ROUND) & is_strip[h // 3] & (other >= 0) & is_strip[other // 3]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rinow.curvature.barriers import crease_barriers
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.facets import take_facets
+from rinow.curvature.facets import POSITION_ROUNDING, take_facets
 from rinow.kernels import cuts
 from rinow.mesh import TriangleMesh
 
@@ -88,20 +88,24 @@ def one_sided(
     n, n_cut = mesh.n_vertices, cut.n_vertices
     if cut is mesh:
         return method(mesh, progress=progress, **options), np.zeros(n, np.bool_)
-    report = None if progress is None else lambda done, total: progress(done * n // total, n)
+
+    def report(done: int, total: int) -> None:
+        if progress is not None:
+            progress(done * n // total, n)
+
     estimate = method(cut, progress=report, **options)
-    is_open = cut.topology.vertex_is_boundary | ~np.isfinite(estimate.spread)
-    take_facets(cut, estimate, np.flatnonzero(is_open & cut.topology.vertex_is_used))
+    take_facets(cut, estimate, cut.topology.vertex_is_boundary | ~np.isfinite(estimate.spread))
     on_crease = np.bincount(origin, minlength=n) > 1
-    order = np.lexsort((np.arange(n_cut), -cut.vertex_areas, -_bending(estimate), origin))
+    order = np.lexsort((np.arange(n_cut), -cut.vertex_areas, -_bending(estimate, cut.diagonal), origin))
     return estimate.at(order[np.searchsorted(origin[order], np.arange(n))]), on_crease
 
 
-def _bending(estimate: Estimate) -> NDArray[np.float64]:
-    """Curvedness at each vertex; 0 where noise explains the sagitta over the ball, -1 without a value."""
-    assert estimate.mean is not None
+def _bending(estimate: Estimate, diagonal: float) -> NDArray[np.float64]:
+    """Squared curvedness at each vertex; 0 where noise explains the sagitta over the ball, -1 without a value."""
+    mean = np.zeros_like(estimate.gaussian) if estimate.mean is None else estimate.mean
+    noise = np.zeros_like(mean) if estimate.noise is None else np.nan_to_num(estimate.noise)
     with np.errstate(invalid="ignore"):
-        squared = 2.0 * estimate.mean**2 - estimate.gaussian
+        squared = 2.0 * mean**2 - estimate.gaussian
         sagitta = 0.5 * np.sqrt(np.maximum(squared, 0.0)) * estimate.radius**2
-        bends = sagitta > NOISE * (0.0 if estimate.noise is None else np.nan_to_num(estimate.noise))
+        bends = sagitta > NOISE * np.maximum(noise, POSITION_ROUNDING * diagonal)
     return np.where(np.isfinite(squared), np.where(bends, squared, 0.0), -1.0)

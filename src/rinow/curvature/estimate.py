@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,5 +49,5 @@ class Estimate:
 
     def at(self, vertices: NDArray[np.intp]) -> Estimate:
         """The values at some vertices, in their order."""
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
-        return Estimate(**{name: value if value is None else value[vertices] for name, value in values.items()})
+        values: dict[str, Any] = {field.name: getattr(self, field.name) for field in fields(self)}
+        return replace(self, **{name: x[vertices] for name, x in values.items() if x is not None})

@@ -1,4 +1,4 @@
-"""Curvature of vertices between flat facets, as CAD models have them: their meshes have vertices on feature lines only."""
+"""Curvature of vertices between flat facets, as models of parts have them: all on feature lines, none inside faces."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rinow.curvature.estimate import Estimate
 from rinow.kernels import facet_stars
 from rinow.mesh import TriangleMesh
 
-__all__ = ["take_facets"]
+__all__ = ["POSITION_ROUNDING", "take_facets"]
 
 Floats = NDArray[np.float64]
 
@@ -18,7 +18,7 @@ POSITION_ROUNDING = 4.0 * 2.0**-24
 """Error of positions over the size of the mesh: files keep 24 bits."""
 
 
-def take_facets(mesh: TriangleMesh, estimate: Estimate, rows: NDArray[np.intp]) -> None:
+def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool_]) -> None:
     r"""Write the curvature of prisms and flat facets into an estimate.
 
     Parameters
@@ -26,10 +26,10 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, rows: NDArray[np.intp]) 
     mesh : TriangleMesh
         The surface, cut open along its creases.
     estimate : Estimate
-        Its curvature; changed in place at those of the rows whose star has coplanar faces and bends along at most one
-        line.
-    rows : (k,) ndarray of intp
-        Vertices to look at.
+        Its curvature; changed in place at vertices whose star is flat, and at open ones whose star has coplanar faces
+        and bends along one line.
+    is_open : (n_vertices,) ndarray of bool
+        Vertices on creases and those without a fit.
 
     Notes
     -----
@@ -40,8 +40,9 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, rows: NDArray[np.intp]) 
 
     is the Menger curvature of three points of the section across that edge, exact for any two heights.
     """
-    if estimate.mean is None or estimate.k1 is None or estimate.k2 is None or not len(rows):
+    if estimate.mean is None or estimate.k1 is None or estimate.k2 is None:
         return
+    rows = np.flatnonzero(mesh.topology.vertex_is_used)
     t, turnings = mesh.topology, EdgeTurnings(mesh)
     rounding = POSITION_ROUNDING * mesh.diagonal * turnings.gains
     across, lines = np.empty(len(rows)), np.empty(len(rows), np.intp)
@@ -49,7 +50,7 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, rows: NDArray[np.intp]) 
         rows, np.nan_to_num(turnings.turnings), rounding, turnings.edge_of_halfedge, turnings.halfedges, t.partners,
         mesh.vertices, mesh.faces, t.corner_offsets, t.vertex_corners, t.edges, across, lines,
     )  # fmt: skip
-    is_facet = np.isfinite(across)
+    is_facet = np.isfinite(across) & (is_open[rows] | (lines < 0))
     rows, across, lines = rows[is_facet], across[is_facet], lines[is_facet]
     estimate.gaussian[rows] = estimate.spread[rows] = 0.0
     estimate.mean[rows] = 0.5 * across
@@ -68,8 +69,9 @@ def _turn_directions(
     along /= np.linalg.norm(along, axis=1)[:, None]
     sideways = np.cross(mesh.vertex_normals[rows], along)
     lengths = np.linalg.norm(sideways, axis=1)
-    rows, along, sideways, across = (x[lengths > 0.0] for x in (rows, along, sideways, across))
-    sideways /= lengths[lengths > 0.0, None]
+    known = lengths > 0.0
+    rows, across, along = rows[known], across[known], along[known]
+    sideways = sideways[known] / lengths[known, None]
     convex = (across > 0.0)[:, None]
     estimate.direction1[rows] = np.where(convex, sideways, along)
     estimate.direction2[rows] = np.where(convex, along, sideways)

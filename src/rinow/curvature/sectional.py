@@ -126,9 +126,7 @@ def sectional(
     estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
     if radius is None:
         _fill_in(mesh, estimate)
-    is_flat = _flat_vertices(mesh) & np.isfinite(gaussian)
-    gaussian[is_flat] = 0.0
-    estimate.k1[is_flat], estimate.k2[is_flat] = np.maximum(2.0 * mean[is_flat], 0.0), np.minimum(2.0 * mean[is_flat], 0.0)
+    _flatten(estimate, _flat_vertices(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
     return estimate
@@ -204,6 +202,16 @@ def _flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
     if curved.mean() > 0.99:
         return ~curved & False
     return ~rings_around(t, curved, FLAT_RINGS)
+
+
+def _flatten(estimate: Estimate, is_flat: NDArray[np.bool_]) -> None:
+    """Take K = 0 at some vertices; the mean curvature stays."""
+    rows = np.flatnonzero(is_flat & np.isfinite(estimate.gaussian))
+    if estimate.mean is None or not len(rows):
+        return
+    estimate.gaussian[rows] = 0.0
+    for name, limit in (("k1", np.maximum), ("k2", np.minimum)):
+        getattr(estimate, name)[rows] = limit(2.0 * estimate.mean[rows], 0.0)
 
 
 def rings_around(graph: Topology | balls.Sheet, marked: NDArray[np.bool_], n_rings: int) -> NDArray[np.bool_]:

@@ -60,7 +60,7 @@ class SurfaceCurvature:
     direction1, direction2 : (n_vertices, 3) ndarray of float
         Unit principal directions, orthogonal to each other; their signs mean nothing.
     status : (n_vertices,) ndarray of uint8
-        Values of `VertexStatus`.  With OK, `gaussian` is finite.
+        Values of `VertexStatus`.  With OK, `gaussian` is finite.  Vertices on creases have BOUNDARY.
     radius : (n_vertices,) ndarray of float
         Scale the values are taken from, in units of length.
     spread : (n_vertices,) ndarray of float
@@ -149,6 +149,9 @@ def surface_curvature(
     Notes
     -----
     All values are unchanged by rotations, shifts and renumbering, up to rounding, and scale as powers of length.
+    "auto" and "sectional" take no data from beyond a crease.  A vertex on a crease has one curvature on each side: that
+    of the side that bends most is given, so that the rim of a hole in a plate has the curvature of its wall.  Flat
+    facets have 0, also at corners, whose curvature as points is infinite; `singular_features` has their angles.
     Lengths from 1e-150 to 1e150 neither overflow nor underflow.  Results do not depend on the number of threads.
 
     References
