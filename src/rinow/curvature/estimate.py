@@ -51,3 +51,10 @@ class Estimate:
         """The values at some vertices, in their order."""
         values: dict[str, Any] = {field.name: getattr(self, field.name) for field in fields(self)}
         return replace(self, **{name: x[vertices] for name, x in values.items() if x is not None})
+
+    def put(self, vertices: NDArray[np.intp], origins: NDArray[np.intp]) -> None:
+        """Give some vertices the values of others."""
+        if len(vertices):
+            for value in (getattr(self, field.name) for field in fields(self)):
+                if value is not None:
+                    value[vertices] = value[origins]

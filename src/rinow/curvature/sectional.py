@@ -16,6 +16,7 @@ from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, stencil_surface
+from rinow.curvature.strays import stray_vertices
 from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencils
 from rinow.mesh import TriangleMesh
 from rinow.topology import Topology
@@ -109,7 +110,8 @@ def sectional(
     --------
     auto : Together with `intrinsic`.
     """
-    sheet, index = patch_sheet(mesh, barriers)
+    is_stray, on_edge, ends = stray_vertices(mesh)
+    sheet, index = patch_sheet(mesh, barriers, is_stray)
     n = mesh.n_vertices
     tasks = Tasks(executor or SerialExecutor())
     if progress is not None:
@@ -124,6 +126,7 @@ def sectional(
     noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
     spread, half = CALIBRATION * np.sqrt(risk), np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
+    estimate.put(on_edge, ends)
     if radius is None:
         _fill_in(mesh, estimate)
     _flatten(estimate, _flat_vertices(mesh))
