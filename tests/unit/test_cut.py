@@ -6,7 +6,7 @@ import pytest
 import parts
 import rinow
 import shapes
-from rinow.curvature.cut import cut_along_creases, largest_copies
+from rinow.curvature.cut import cut_along_creases
 
 
 def cut(part):
@@ -50,16 +50,6 @@ def test_given_edges_are_cut_and_unused_vertices_stay():
     # Edges that cross a line form no closed curve, but a band of faces between two rows falls apart.
     some, _ = cut_along_creases(mesh, across)
     assert some.topology.n_components > 1
-
-
-def test_largest_copies():
-    part = parts.cylinder(0.25, height=4.0)
-    mesh, sheets, origin = cut(part)
-    best = largest_copies(sheets, origin, mesh.n_vertices)
-    np.testing.assert_array_equal(origin[best], np.arange(mesh.n_vertices))
-    areas = sheets.vertex_areas
-    for v in part.creases[:5].ravel():
-        assert areas[best[v]] == areas[origin == v].max()
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.02])

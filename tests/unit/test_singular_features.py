@@ -6,7 +6,8 @@ import pytest
 import parts
 import rinow
 import shapes
-from rinow.curvature.creases import EdgeTurnings, crease_barriers, crease_vertices
+from rinow.curvature.barriers import crease_barriers
+from rinow.curvature.creases import EdgeTurnings
 
 SOLIDS = parts.with_features()
 SMOOTH = {
@@ -206,7 +207,6 @@ def test_barriers_are_the_creases_by_edges_of_the_mesh():
     is_crease = crease_barriers(mesh)
     assert is_crease.shape == (mesh.topology.n_edges,)
     assert min(share(np.sort(mesh.topology.edges[is_crease], axis=1), part.creases)) >= 0.95
-    assert set(np.flatnonzero(crease_vertices(mesh))) == set(mesh.topology.edges[is_crease].ravel())
 
 
 def test_noise_of_heights_is_estimated_from_edges_that_turn_to_and_fro():

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._arrays import read_only
-from rinow.kernels import crease_lines, creases, stencils
+from rinow.kernels import crease_lines, creases, edge_noise, stencils
 from rinow.mesh import TriangleMesh
 
-__all__ = ["CreaseLines", "EdgeTurnings", "crease_barriers", "crease_lines_of", "crease_vertices"]
+__all__ = ["CreaseLines", "EdgeTurnings", "crease_lines_of"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -79,7 +79,7 @@ class EdgeTurnings:
     def gains(self) -> Floats:
         """(n_edges,): standard deviation of each turning for heights of deviation 1; inf without two faces."""
         mesh, gains = self.mesh, np.empty(len(self.halfedges))
-        creases.edge_gains(mesh.vertices, mesh.faces, mesh.topology.partners, self.halfedges, gains)
+        edge_noise.edge_gains(mesh.vertices, mesh.faces, mesh.topology.partners, self.halfedges, gains)
         return read_only(gains)
 
     @cached_property
@@ -87,7 +87,7 @@ class EdgeTurnings:
         """(n_edges,): standard deviation of the heights of the vertices around each edge, a length."""
         t, n = self.mesh.topology, self.mesh.n_vertices
         noise, sums = np.empty(n), np.empty(n)
-        creases.height_noise(
+        edge_noise.height_noise(
             self.turnings, self.gains, self.edge_of_halfedge, t.corner_offsets, t.vertex_corners, N_BLOCKS, noise
         )
         for _ in range(NOISE_RINGS):
@@ -100,6 +100,15 @@ class EdgeTurnings:
         """(n_edges,): standard deviation of each turning, in radians; inf where it has none."""
         noise, gains = self.height_noise, self.gains
         return read_only(np.multiply(noise, gains, out=np.full_like(gains, np.inf), where=np.isfinite(gains)))
+
+    @cached_property
+    def least_errors(self) -> Floats:
+        """(n_edges,): what the noise contributes to the standard error of a jump, in radians; inf without two faces."""
+        mesh, errors = self.mesh, np.empty(len(self.halfedges))
+        creases.least_errors(
+            mesh.vertices, mesh.faces, mesh.topology.partners, self.halfedges, self.height_noise, errors
+        )
+        return read_only(errors)
 
     def jumps(self, candidates: Indices, barrier: Bools) -> tuple[Floats, Floats]:
         """(n_edges,) each: the turning that neither side explains, 0 off the candidates, and its standard error."""
@@ -150,14 +159,16 @@ class CreaseLines:
     turns: Floats
 
 
-def crease_lines_of(mesh: TriangleMesh) -> CreaseLines:
+def crease_lines_of(turnings: EdgeTurnings) -> CreaseLines:
     """The creases of a mesh, linked to lines.
 
     Sections across the edges are followed twice: first up to edges that turn by much, then up to the creases found.
+    Edges whose jump could not exceed its standard error enough are not followed at all.
     """
-    turnings = EdgeTurnings(mesh)
-    theta = np.nan_to_num(turnings.turnings)
-    candidates = np.flatnonzero(np.abs(theta) >= WEAK_ANGLE / MOST_JUMP)
+    mesh, theta = turnings.mesh, np.nan_to_num(turnings.turnings)
+    least = np.maximum(WEAK_ANGLE, WEAK_NOISE * turnings.least_errors) / MOST_JUMP
+    flat = (turnings.least_errors < EXACT_NOISE) & (np.abs(theta) > EXACT_ANGLE / MOST_JUMP)
+    candidates = np.flatnonzero((np.abs(theta) >= least) | flat)
     barrier = np.abs(theta) > np.maximum(BARRIER_ANGLE, BARRIER_NOISE * turnings.noise)
     jumps = errors = np.zeros_like(theta)
     for _ in range(2):
@@ -171,31 +182,6 @@ def crease_lines_of(mesh: TriangleMesh) -> CreaseLines:
     )
     angles = np.where(barrier, jumps, 0.0)
     return CreaseLines(barrier, angles, errors, _exponents(theta, jumps), degrees, turns)
-
-
-def crease_barriers(mesh: TriangleMesh) -> Bools:
-    """(n_edges,): edges that are creases beyond doubt, which the neighbourhood of a vertex must not grow across.
-
-    Noise of up to a tenth of the edge length makes no barrier on a smooth surface.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-        The surface.
-
-    Returns
-    -------
-    is_crease : (n_edges,) ndarray of bool
-        In the order of ``mesh.topology.edges``.
-    """
-    return crease_lines_of(mesh).is_crease
-
-
-def crease_vertices(mesh: TriangleMesh) -> Bools:
-    """(n_vertices,): ends of the edges of `crease_barriers`; balls may reach them but not grow beyond."""
-    on_crease = np.zeros(mesh.n_vertices, np.bool_)
-    on_crease[mesh.topology.edges[crease_barriers(mesh)]] = True
-    return on_crease
 
 
 def _exponents(theta: Floats, jumps: Floats) -> Floats:

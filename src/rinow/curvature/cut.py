@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow.curvature.creases import EdgeTurnings, crease_barriers
+from rinow.curvature.barriers import crease_barriers
+from rinow.curvature.creases import EdgeTurnings
+from rinow.curvature.estimate import Estimate
+from rinow.curvature.facets import POSITION_ROUNDING, take_facets
 from rinow.kernels import cuts
 from rinow.mesh import TriangleMesh
 
-__all__ = ["cut_along_creases", "largest_copies"]
+__all__ = ["cut_along_creases", "one_sided"]
+
+Bools = NDArray[np.bool_]
+Progress = Callable[[int, int], object]
+
+NOISE = 2.0
+"""A side bends if its sagitta over a ball exceeds so many standard deviations of the positions."""
 
 
 def cut_along_creases(
@@ -27,7 +39,7 @@ def cut_along_creases(
     Returns
     -------
     cut : TriangleMesh
-        The first n_vertices vertices are those of `mesh`; the creases are boundaries.
+        The first n_vertices vertices are those of `mesh`; the creases are boundaries.  All faces point outwards.
     origin : (n_cut_vertices,) ndarray of intp
         Vertex of `mesh` of each vertex of `cut`.
     """
@@ -42,11 +54,58 @@ def cut_along_creases(
     origin = np.resize(origin, mesh.n_vertices + n_corners)
     n = cuts.number_sectors(mesh.n_vertices, t.corner_offsets, t.vertex_corners, labels, faces, origin, numbers)
     origin = origin[:n].copy()
+    faces[mesh.outward_flips] = faces[mesh.outward_flips, ::-1]
     return TriangleMesh(mesh.vertices[origin], faces), origin
 
 
-def largest_copies(cut: TriangleMesh, origin: NDArray[np.intp], n_vertices: int) -> NDArray[np.intp]:
-    """(n_vertices,): of the copies of each vertex the one with the largest area around it, the first of equal ones."""
-    order = np.lexsort((np.arange(len(origin)), -cut.vertex_areas, origin))
-    first = np.searchsorted(origin[order], np.arange(n_vertices))
-    return order[first]
+def one_sided(
+    method: Callable[..., Estimate], mesh: TriangleMesh, progress: Progress | None = None, **options: Any
+) -> tuple[Estimate, Bools]:
+    """An estimate that takes no data from beyond a crease, and the vertices on creases.
+
+    At a crease each side has its own curvature; that of the side that bends most is taken, of flat ones that with the
+    largest area around the vertex.
+
+    Parameters
+    ----------
+    method : callable
+        From a mesh, `progress` and options to an estimate.
+    mesh : TriangleMesh
+        The surface.
+    progress : callable, optional
+        Called with the number of vertices done and their total.
+    **options
+        Passed on.
+
+    Returns
+    -------
+    estimate : Estimate
+        Of the vertices of `mesh`; without creases that of `method`.
+    on_crease : (n_vertices,) ndarray of bool
+        The vertex has more than one side.
+    """
+    cut, origin = cut_along_creases(mesh)
+    n, n_cut = mesh.n_vertices, cut.n_vertices
+    if cut is mesh:
+        return method(mesh, progress=progress, **options), np.zeros(n, np.bool_)
+
+    def report(done: int, total: int) -> None:
+        if progress is not None:
+            progress(done * n // total, n)
+
+    estimate = method(cut, progress=report, **options)
+    take_facets(cut, estimate, cut.topology.vertex_is_boundary | ~np.isfinite(estimate.spread))
+    on_crease = np.bincount(origin, minlength=n) > 1
+    order = np.lexsort((np.arange(n_cut), -cut.vertex_areas, -_bending(estimate, cut.diagonal), origin))
+    return estimate.at(order[np.searchsorted(origin[order], np.arange(n))]), on_crease
+
+
+def _bending(estimate: Estimate, diagonal: float) -> NDArray[np.float64]:
+    """Squared curvedness at each vertex; 0 where noise explains the sagitta over the ball, -1 without a value."""
+    mean = np.zeros_like(estimate.gaussian) if estimate.mean is None else estimate.mean
+    noise = np.zeros_like(mean) if estimate.noise is None else np.nan_to_num(estimate.noise)
+    with np.errstate(invalid="ignore"):
+        squared = 2.0 * mean**2 - estimate.gaussian
+        sagitta = 0.5 * np.sqrt(np.maximum(squared, 0.0)) * estimate.radius**2
+        bends = sagitta > NOISE * np.maximum(noise, POSITION_ROUNDING * diagonal)
+    return np.where(np.isfinite(squared), np.where(bends, squared, 0.0), -1.0)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,3 +53,15 @@ class Estimate:
         mean = self.mean * (1.0 + share)
         half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
         return replace(self, gaussian=gaussian, spread=spread, mean=mean, k1=mean + half, k2=mean - half)
+
+    def at(self, vertices: NDArray[np.intp]) -> Estimate:
+        """The values at some vertices, in their order."""
+        values: dict[str, Any] = {field.name: getattr(self, field.name) for field in fields(self)}
+        return replace(self, **{name: x[vertices] for name, x in values.items() if x is not None})
+
+    def put(self, vertices: NDArray[np.intp], origins: NDArray[np.intp]) -> None:
+        """Give some vertices the values of others."""
+        if len(vertices):
+            for value in (getattr(self, field.name) for field in fields(self)):
+                if value is not None:
+                    value[vertices] = value[origins]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rinow import tolerances
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
-__all__ = ["mesh_notes", "weld_notes"]
+__all__ = ["crease_notes", "mesh_notes", "weld_notes"]
 
 
 def weld_notes(before: int, after: int) -> tuple[str, ...]:
@@ -17,6 +18,17 @@ def weld_notes(before: int, after: int) -> tuple[str, ...]:
     return (
         f"The faces share no edge: vertices closer than {tolerances.WELD_DISTANCE:g} of the diagonal were taken as one "
         f"for the computation, {after} points for {before} vertices.",
+    )
+
+
+def crease_notes(on_crease: NDArray[np.bool_]) -> tuple[str, ...]:
+    """What was done at vertices on creases."""
+    n = int(np.count_nonzero(on_crease))
+    if not n:
+        return ()
+    return (
+        f"{n} vertices lie on creases, where the two sides differ: their values are those of the side that bends most "
+        "(status BOUNDARY), and none is taken across a crease.",
     )
 
 

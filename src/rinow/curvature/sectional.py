@@ -16,6 +16,7 @@ from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, stencil_surface
+from rinow.curvature.strays import stray_vertices
 from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencils
 from rinow.mesh import TriangleMesh
 from rinow.topology import Topology
@@ -109,7 +110,8 @@ def sectional(
     --------
     auto : Together with `intrinsic`.
     """
-    sheet, index = patch_sheet(mesh, barriers)
+    is_stray, on_edge, ends = stray_vertices(mesh)
+    sheet, index = patch_sheet(mesh, barriers, is_stray)
     n = mesh.n_vertices
     tasks = Tasks(executor or SerialExecutor())
     if progress is not None:
@@ -121,13 +123,13 @@ def sectional(
     out[:, 0] *= shrinkage(samples, out)
     gaussian, mean, risk, reach = (_spread_out(out[:, i], index, mesh.n_vertices) for i in range(4))
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
-    is_flat = _flat_vertices(mesh)
-    gaussian[is_flat & np.isfinite(gaussian)] = 0.0
     noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
     spread, half = CALIBRATION * np.sqrt(risk), np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
+    estimate.put(on_edge, ends)
     if radius is None:
         _fill_in(mesh, estimate)
+    _flatten(estimate, _flat_vertices(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
     return estimate
@@ -203,6 +205,16 @@ def _flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
     if curved.mean() > 0.99:
         return ~curved & False
     return ~rings_around(t, curved, FLAT_RINGS)
+
+
+def _flatten(estimate: Estimate, is_flat: NDArray[np.bool_]) -> None:
+    """Take K = 0 at some vertices; the mean curvature stays."""
+    rows = np.flatnonzero(is_flat & np.isfinite(estimate.gaussian))
+    if estimate.mean is None or not len(rows):
+        return
+    estimate.gaussian[rows] = 0.0
+    for name, limit in (("k1", np.maximum), ("k2", np.minimum)):
+        getattr(estimate, name)[rows] = limit(2.0 * estimate.mean[rows], 0.0)
 
 
 def rings_around(graph: Topology | balls.Sheet, marked: NDArray[np.bool_], n_rings: int) -> NDArray[np.bool_]:

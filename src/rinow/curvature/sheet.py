@@ -12,7 +12,9 @@ from rinow.mesh import TriangleMesh
 __all__ = ["patch_sheet"]
 
 
-def patch_sheet(mesh: TriangleMesh, barriers: NDArray[np.bool_] | None = None) -> tuple[balls.Sheet, NDArray[np.intp]]:
+def patch_sheet(
+    mesh: TriangleMesh, barriers: NDArray[np.bool_] | None = None, left_out: NDArray[np.bool_] | None = None
+) -> tuple[balls.Sheet, NDArray[np.intp]]:
     """The sheet, and the index in the mesh of each of its vertices.
 
     Parameters
@@ -21,6 +23,8 @@ def patch_sheet(mesh: TriangleMesh, barriers: NDArray[np.bool_] | None = None) -
         The surface.
     barriers : (n_vertices,) ndarray of bool, optional
         Vertices that balls reach but do not grow beyond, such as those on crease edges.
+    left_out : (n_vertices,) ndarray of bool, optional
+        Vertices that do not belong to the surface.
 
     Notes
     -----
@@ -32,7 +36,7 @@ def patch_sheet(mesh: TriangleMesh, barriers: NDArray[np.bool_] | None = None) -
     normals = np.empty_like(surface.normals)
     stencils.ring_directions(surface.normals, not t.is_orientable, t.neighbour_offsets, t.neighbours, normals)
     spacing = local_spacing(mesh)
-    index = np.flatnonzero(t.vertex_is_used & (spacing > 0.0))
+    index = np.flatnonzero(t.vertex_is_used & (spacing > 0.0) & (True if left_out is None else ~left_out))
     index = index[np.argsort(_morton_codes(mesh.vertices[index]), kind="stable")]
     rank = np.full(mesh.n_vertices, -1, np.int32)
     rank[index] = np.arange(len(index), dtype=np.int32)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.cone_points import LEAST_DEFECT, cone_defects
-from rinow.curvature.creases import CreaseLines, crease_lines_of
+from rinow.curvature.creases import CreaseLines, EdgeTurnings, crease_lines_of
 from rinow.curvature.notes import mesh_notes, weld_notes
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh
 
@@ -153,7 +153,7 @@ def singular_features(mesh: Any) -> SingularFeatures:
     if isinstance(surface, IntrinsicMesh):
         points, defects = cone_defects(surface, closed)
         return _features(names, points, defects, np.empty((0, 2), np.intp), np.empty((3, 0)), points[:0], notes)
-    lines = crease_lines_of(surface)
+    lines = crease_lines_of(EdgeTurnings(surface))
     corners = np.flatnonzero((lines.degrees >= BRANCHES) | (lines.turns > CORNER_TURN))
     points, defects = _all_cone_points(surface, lines, corners, closed)
     values = np.stack([lines.angles, lines.errors, lines.exponents])[:, lines.is_crease]

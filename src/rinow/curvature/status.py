@@ -19,7 +19,7 @@ class VertexStatus(IntEnum):
     OK = 0
     """The value is defined and finite."""
     BOUNDARY = 1
-    """A one-sided estimate, or nan where the method has none."""
+    """A one-sided estimate, at a boundary or on a crease, or nan where the method has none."""
     ISOLATED = 2
     """nan: no face has the vertex."""
     DEGENERATE = 3

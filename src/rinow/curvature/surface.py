@@ -13,10 +13,11 @@ from rinow._arrays import as_floats
 from rinow._executor import Executor
 from rinow.curvature.angle_defect import angle_defect
 from rinow.curvature.auto import auto
+from rinow.curvature.cut import one_sided
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.intrinsic import intrinsic
 from rinow.curvature.lifted import lifted
-from rinow.curvature.notes import mesh_notes, weld_notes
+from rinow.curvature.notes import crease_notes, mesh_notes, weld_notes
 from rinow.curvature.sectional import sectional
 from rinow.curvature.status import VertexStatus, vertex_status
 from rinow.curvature.wald import wald
@@ -59,7 +60,7 @@ class SurfaceCurvature:
     direction1, direction2 : (n_vertices, 3) ndarray of float
         Unit principal directions, orthogonal to each other; their signs mean nothing.
     status : (n_vertices,) ndarray of uint8
-        Values of `VertexStatus`.  With OK, `gaussian` is finite.
+        Values of `VertexStatus`.  With OK, `gaussian` is finite.  Vertices on creases have BOUNDARY.
     radius : (n_vertices,) ndarray of float
         Scale the values are taken from, in units of length.
     spread : (n_vertices,) ndarray of float
@@ -148,6 +149,9 @@ def surface_curvature(
     Notes
     -----
     All values are unchanged by rotations, shifts and renumbering, up to rounding, and scale as powers of length.
+    "auto" and "sectional" take no data from beyond a crease.  A vertex on a crease has one curvature on each side: that
+    of the side that bends most is given, so that the rim of a hole in a plate has the curvature of its wall.  Flat
+    facets have 0, also at corners, whose curvature as points is infinite; `singular_features` has their angles.
     Lengths from 1e-150 to 1e150 neither overflow nor underflow.  Results do not depend on the number of threads.
 
     References
@@ -177,9 +181,11 @@ def surface_curvature(
         n = surface.n_vertices
         surface, index = surface.welded()
         notes = weld_notes(n, surface.n_vertices)
-    estimate = _estimate(surface, chosen, quality, radius, progress, executor)
-    result = _assembled(estimate, vertex_status(surface), chosen)
-    notes += mesh_notes(surface, oriented=chosen not in INTRINSIC)
+    estimate, on_crease = _estimate(surface, chosen, quality, radius, progress, executor)
+    status = vertex_status(surface)
+    status[on_crease & (status == VertexStatus.OK)] = VertexStatus.BOUNDARY
+    result = _assembled(estimate, status, chosen)
+    notes += mesh_notes(surface, oriented=chosen not in INTRINSIC) + crease_notes(on_crease)
     return replace(_relabelled(_rescaled(result, unit), index), notes=notes)
 
 
@@ -220,17 +226,18 @@ def _estimate(
     radius: float | None,
     progress: Callable[[int, int], object] | None,
     executor: Executor | None,
-) -> Estimate:
+) -> tuple[Estimate, NDArray[np.bool_]]:
+    """The estimate, and where it is that of one side of a crease."""
     if method in BY_POSITIONS:
         options: dict[str, Any] = {"quality": quality, "radius": radius, "progress": progress, "executor": executor}
-        return BY_POSITIONS[method](as_triangle_mesh(mesh), **options)
+        return one_sided(BY_POSITIONS[method], as_triangle_mesh(mesh), **options)
     if method == "intrinsic":
         estimate = intrinsic(mesh, radius=radius)
     else:
         estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
-    return estimate
+    return estimate, np.zeros(mesh.n_vertices, np.bool_)
 
 
 def _assembled(estimate: Estimate, status: NDArray[np.uint8], method: str) -> SurfaceCurvature:

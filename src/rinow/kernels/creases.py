@@ -121,23 +121,6 @@ def foot_and_height(h, vertices, faces):
     return dot(u, to_apex) / max(length, TINY), max(math.sqrt(dot(offset, offset)), TINY), max(length, TINY)
 
 
-@parallel_kernel
-def edge_gains(vertices, faces, partners, edge_halfedges, out):
-    """Write the standard deviation of the turning at each edge for heights of the vertices with deviation 1."""
-    for e in prange(edge_halfedges.shape[0]):
-        h = edge_halfedges[e]
-        g = partners[h]
-        out[e] = np.inf
-        if g >= 0:
-            p, mine, _ = foot_and_height(h, vertices, faces)
-            q, theirs, _ = foot_and_height(g, vertices, faces)
-            if faces[h // 3, h % 3] != faces[g // 3, g % 3]:
-                q = 1.0 - q
-            start = (1.0 - p) / mine + (1.0 - q) / theirs
-            end = p / mine + q / theirs
-            out[e] = math.sqrt(1.0 / mine**2 + 1.0 / theirs**2 + start * start + end * end)
-
-
 @kernel
 def exit_of(p, d, entry, n, vertices, faces):
     """The half-edge through which the ray from p in direction d leaves the face entered by `entry`, and its length."""
@@ -242,6 +225,24 @@ def reach_of(h, vertices, faces):
 
 
 @parallel_kernel
+def least_errors(vertices, faces, partners, edge_halfedges, noise, out):
+    """Write the part of the standard error of a jump at each edge that the noise (n_edges,) of heights makes."""
+    for e in prange(edge_halfedges.shape[0]):
+        h = edge_halfedges[e]
+        g = partners[h]
+        out[e] = np.inf
+        if g >= 0:
+            out[e] = noise_error(noise[e], reach_of(h, vertices, faces), reach_of(g, vertices, faces))
+
+
+@kernel
+def noise_error(noise, mine, theirs):
+    """Standard error of a jump between sections of two lengths by the noise of heights."""
+    scale = SECTION_GAIN * noise
+    return math.sqrt((scale / mine) ** 2 + (scale / theirs) ** 2)
+
+
+@parallel_kernel
 def edge_jumps(
     edges, vertices, faces, flip, normals, partners, edge_halfedges, edge_of, barrier, noise, n_blocks, jumps, errors
 ):
@@ -263,34 +264,4 @@ def edge_jumps(
             m, y = side_normal(g, other, theirs, barrier, edge_of, vertices, faces, normals, partners, sums)
             angle = turn(n, m, u)
             jumps[e] = -angle if flip[h // 3] else angle
-            scale = SECTION_GAIN * noise[e]
-            errors[e] = math.sqrt(x + y + (scale / mine) ** 2 + (scale / theirs) ** 2)
-
-
-@kernel
-def middle_spread(values, n):
-    """Smaller distance from 0 of the quartiles on its two sides, over that of the normal law; 0 if one side is empty.
-
-    Noise turns edges to and fro, a convex or a folded neighbourhood turns them one way.
-    """
-    ordered = np.sort(values[:n])
-    low, high = ordered[(n - 1) // 4], ordered[n - 1 - (n - 1) // 4]
-    return max(min(-low, high), 0.0) / 0.6745
-
-
-@parallel_kernel
-def height_noise(turnings, gains, edge_of, offsets, corners, n_blocks, out):
-    """Write the standard deviation of heights that explains the turnings at the edges of the star of each vertex."""
-    n_vertices = offsets.shape[0] - 1
-    for block in prange(n_blocks):
-        for v in range(n_vertices * block // n_blocks, n_vertices * (block + 1) // n_blocks):
-            values = np.empty(3 * (offsets[v + 1] - offsets[v]))
-            n = 0
-            for i in range(offsets[v], offsets[v + 1]):
-                f, k = corners[i] // 3, corners[i] % 3
-                for j in range(2):
-                    e = edge_of[3 * f + (k + j) % 3]
-                    if np.isfinite(turnings[e]):
-                        values[n] = turnings[e] / gains[e]
-                        n += 1
-            out[v] = middle_spread(values, n) if n > 0 else 0.0
+            errors[e] = math.sqrt(x + y + noise_error(noise[e], mine, theirs) ** 2)

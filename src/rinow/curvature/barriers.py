@@ -1,0 +1,68 @@
+"""Creases beyond doubt, across which no curvature is averaged."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.curvature.creases import CreaseLines, EdgeTurnings, crease_lines_of
+from rinow.kernels import crease_lines
+from rinow.mesh import TriangleMesh
+
+__all__ = ["crease_barriers"]
+
+Bools = NDArray[np.bool_]
+
+LEAST_ANGLE, LEAST_NOISE = np.radians(7.6), 6.0
+"""Turning of an edge that can be certain, alone and in standard deviations.  On a smooth mesh noise makes none such."""
+LEAST_EDGES = 8
+"""Edges of a certain line, and certain ones of a mesh that is worth a closer look."""
+CERTAIN = 8.0
+"""Median jump over its standard error of a certain line."""
+ROUND = np.radians(44.0)
+"""Jump up to which lines that only bound single strips of faces may be those of a coarse round."""
+
+
+def crease_barriers(mesh: TriangleMesh) -> Bools:
+    """(n_edges,): edges that are creases beyond doubt, in the order of ``mesh.topology.edges``.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+
+    Returns
+    -------
+    is_crease : (n_edges,) ndarray of bool
+        Those lines of `singular_features` of eight edges or more whose median jump is eight standard errors, without
+        the facets of coarse rounds.  Noise of a tenth of the edge length makes no such line on a smooth surface.
+    """
+    turnings = EdgeTurnings(mesh)
+    theta = np.abs(turnings.turnings)
+    with np.errstate(invalid="ignore"):
+        certain = theta > LEAST_ANGLE
+        if np.count_nonzero(certain) >= LEAST_EDGES:
+            certain &= theta > LEAST_NOISE * turnings.noise
+    if np.count_nonzero(certain) < LEAST_EDGES:
+        return np.zeros(len(theta), np.bool_)
+    return _certain_lines(mesh, turnings, crease_lines_of(turnings))
+
+
+def _certain_lines(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:
+    edges, kept = mesh.topology.edges, lines.is_crease
+    with np.errstate(divide="ignore"):
+        clear = np.abs(lines.angles) >= CERTAIN * lines.errors
+    clear &= ~_bounds_strips(mesh, turnings, lines)
+    labels = crease_lines.line_components(kept, edges, mesh.n_vertices)
+    sizes, counts = (np.bincount(labels[x], minlength=mesh.n_vertices) for x in (kept, kept & clear))
+    return kept & (sizes[labels] >= LEAST_EDGES) & (2 * counts[labels] > sizes[labels])
+
+
+def _bounds_strips(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:
+    """(n_edges,): both faces of a flat crease have all their vertices on creases."""
+    on_crease = np.zeros(mesh.n_vertices, np.bool_)
+    on_crease[mesh.topology.edges[lines.is_crease]] = True
+    is_strip: Bools = np.all(on_crease[mesh.faces], axis=1, keepdims=False)
+    h = turnings.halfedges
+    other = mesh.topology.partners[h]
+    return (np.abs(lines.angles) < ROUND) & is_strip[h // 3] & (other >= 0) & is_strip[other // 3]

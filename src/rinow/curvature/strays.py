@@ -1,0 +1,66 @@
+"""Vertices of damaged meshes that tell nothing about the surface and must not take part in its fits."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.kernels.adjacency import BOUNDARY, NONMANIFOLD
+from rinow.mesh import TriangleMesh
+
+__all__ = ["stray_vertices"]
+
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.intp]
+
+ON_EDGE = 1e-12
+"""How much the two shorter sides of a face exceed the longest, over it, where the vertex between them lies on it."""
+
+
+def stray_vertices(mesh: TriangleMesh) -> tuple[Bools, Indices, Indices]:
+    """Tips of fins and vertices on an edge of two others.
+
+    A fin is a face that stands on an edge with three or more faces and is joined to nothing else.  A vertex in the
+    middle of an edge, made by splitting it, lies on the chord, not on the surface.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+
+    Returns
+    -------
+    is_stray : (n_vertices,) ndarray of bool
+        The vertices.
+    on_edge, ends : (k,) ndarray of intp
+        Those on an edge, and for each the end of the edge that is nearer to it.
+    """
+    is_stray = _fin_tips(mesh)
+    L = mesh.edge_lengths
+    longest = L.max(axis=1, initial=0.0)
+    with np.errstate(invalid="ignore"):
+        thin = np.flatnonzero(L.sum(axis=1) - 2.0 * longest <= ON_EDGE * longest)
+    thin = thin[mesh.topology.face_used[thin]]
+    thin = thin[np.all(L[thin] > 0.0, axis=1)]
+    apex = np.argmax(L[thin], axis=1)
+    sides = np.stack([(apex + 1) % 3, (apex + 2) % 3], axis=1)
+    # Column k is opposite corner k: the nearer end is the corner opposite the longer one of the two sides.
+    farther = np.take_along_axis(L[thin], sides, axis=1).argmax(axis=1)
+    on_edge = mesh.faces[thin, apex]
+    ends = mesh.faces[thin, sides[np.arange(len(thin)), farther]]
+    on_edge, first = np.unique(on_edge, return_index=True)
+    is_stray[on_edge] = True
+    return is_stray, on_edge, ends[first]
+
+
+def _fin_tips(mesh: TriangleMesh) -> Bools:
+    """(n_vertices,): all faces of the vertex are fins."""
+    t = mesh.topology
+    tips = np.zeros(mesh.n_vertices, np.bool_)
+    if not t.vertex_is_on_nonmanifold_edge.any():
+        return tips
+    partners = t.partners.reshape(-1, 3)
+    fins = ((partners == NONMANIFOLD).sum(axis=1) == 1) & ((partners == BOUNDARY).sum(axis=1) == 2)
+    tips[t.faces[fins]] = True
+    tips[t.faces[~fins & t.face_used]] = False
+    return tips & ~t.vertex_is_on_nonmanifold_edge
