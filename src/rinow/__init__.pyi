@@ -22,6 +22,8 @@ from rinow.curvature.graph import graph_curvature as graph_curvature
 from rinow.curvature.haantjes import arc_length as arc_length
 from rinow.curvature.haantjes import haantjes_curvature as haantjes_curvature
 from rinow.curvature.menger import menger_curvature as menger_curvature
+from rinow.curvature.metric_space import MetricSpaceCurvature as MetricSpaceCurvature
+from rinow.curvature.metric_space import metric_space_curvature as metric_space_curvature
 from rinow.curvature.point_cloud import point_cloud_curvature as point_cloud_curvature
 from rinow.curvature.polar import angle_at as angle_at
 from rinow.curvature.polar import polar_coordinates as polar_coordinates

@@ -13,7 +13,7 @@ from rinow._arrays import as_distance_matrix, as_floats
 from rinow.errors import InvalidInputError, NotAMetricError
 from rinow.kernels import point_sets
 
-__all__ = ["CurvatureFit", "fit_curvature"]
+__all__ = ["CurvatureFit", "Misfit", "fit_curvature", "least_misfit"]
 
 Floats = NDArray[np.float64]
 
@@ -106,7 +106,7 @@ def fit_curvature(distances: ArrayLike) -> CurvatureFit:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Misfit:
+class Misfit:
     """What is left of the Gram matrix and of its derivative in k beyond the two dimensions of the surface."""
 
     k: float
@@ -116,7 +116,8 @@ class _Misfit:
     slope: Floats
 
     @classmethod
-    def at(cls, D: Floats, k: float) -> _Misfit:
+    def at(cls, D: Floats, k: float) -> Misfit:
+        """For distances and a curvature; the first point is the base."""
         E, dE = np.empty_like(D), np.empty_like(D)
         point_sets.squared_chords(D, k, E, dE)
         e, de = E[0, 1:], dE[0, 1:]
@@ -137,20 +138,39 @@ class _Misfit:
         square = float(np.vdot(self.slope, self.slope))
         return -float(np.vdot(self.rest, self.slope)) / square if square > SMALL_SLOPE else math.nan
 
+    def coordinates(self) -> Floats:
+        """(n - 1, 2): the other points around the base, up to a turn; plane where k is 0."""
+        e = self.chords[0, 1:]
+        gram = (e[:, None] + e - self.chords[1:, 1:]) / 2 - self.k / 4 * np.outer(e, e)
+        squares, axes = eigh(gram, subset_by_index=[len(e) - 2, len(e) - 1])
+        return axes * np.sqrt(np.maximum(squares, 0.0))
+
     def errors(self) -> tuple[float, float]:
         """Standard deviations of k and of the distances, from the effects of an error in each distance."""
-        n = len(self.chords)
-        E, P = self.chords, self.projector
-        dE = 2 * np.sqrt(E * np.maximum(1 - self.k * E / 4, 0))  # derivatives of the squared chords in the distances
-        u = 0.5 - self.k / 4 * E[0, 1:]
-        W, Pu, diagonal = self.slope / np.vdot(self.slope, self.slope), P @ u, np.diag(P)
-        pairs, spokes = dE[1:, 1:] ** 2, dE[0, 1:] ** 2
-        effect_on_k = (pairs * W**2).sum() / 2 + (spokes * (2 * W @ u) ** 2).sum()
+        variance = self.noise(self.squares, 1)
+        effect = self.effect_on(self.slope / np.vdot(self.slope, self.slope))
+        return (math.sqrt(variance * effect) if len(self.chords) > 4 else math.nan), math.sqrt(variance)
+
+    def effect_on(self, weights: Floats) -> float:
+        """Variance of the sum of weight times entry of `rest` for distances with independent errors of variance 1."""
+        pairs, spokes, u = self._derivatives()
+        return float((pairs * weights**2).sum() / 2 + (spokes * (2 * weights @ u) ** 2).sum())
+
+    def noise(self, squares: float, n_unknowns: int) -> float:
+        """Variance of the distances if they leave this sum of squares of `rest` after a fit of so many numbers."""
+        n, P = len(self.chords), self.projector
+        pairs, spokes, u = self._derivatives()
+        Pu, diagonal = P @ u, np.diag(P)
         effect = (pairs * (np.outer(diagonal, diagonal) + P**2)).sum() / 4
         effect += 2 * (spokes * (Pu @ Pu * diagonal + Pu**2)).sum()
         n_conditions = (n - 2) * (n - 3) // 2
-        variance = self.squares / effect * n_conditions / max(n_conditions - 1, 1)
-        return (math.sqrt(variance * effect_on_k) if n > 4 else math.nan), math.sqrt(variance)
+        return float(squares / effect * n_conditions / max(n_conditions - n_unknowns, 1))
+
+    def _derivatives(self) -> tuple[Floats, Floats, Floats]:
+        """Squared derivatives of the squared chords in the distances, of pairs and from the base, and a factor."""
+        E = self.chords
+        dE = 2 * np.sqrt(E * np.maximum(1 - self.k * E / 4, 0))
+        return dE[1:, 1:] ** 2, dE[0, 1:] ** 2, 0.5 - self.k / 4 * E[0, 1:]
 
 
 def _fit(distances: Floats) -> tuple[float, float, float]:
@@ -164,18 +184,18 @@ def _fit(distances: Floats) -> tuple[float, float, float]:
     if diameter == 0:
         return nothing
     order = np.argsort(D.max(axis=1), kind="stable")
-    misfit = _minimum(D[np.ix_(order, order)] / diameter)
+    misfit = least_misfit(D[np.ix_(order, order)] / diameter)
     if misfit is None:
         return nothing
     error, residual = misfit.errors()
     return misfit.k / diameter**2, error / diameter**2, residual * diameter
 
 
-def _minimum(D: Floats) -> _Misfit | None:
+def least_misfit(D: Floats) -> Misfit | None:
     """The least misfit near that of the linearised equation, by damped steps; None if none is found in the bounds."""
     i, j = np.unravel_index(D.argmax(), D.shape)
     largest = BEYOND * (2 * math.pi / (D[i, j] + float((D[i] + D[j]).max()))) ** 2
-    here, last = _Misfit.at(D, 0.0), math.inf
+    here, last = Misfit.at(D, 0.0), math.inf
     for _ in range(MAX_STEPS):
         step = here.step
         if math.isnan(step):
@@ -183,9 +203,9 @@ def _minimum(D: Floats) -> _Misfit | None:
         if abs(step) <= SMALL_STEP * max(1.0, abs(here.k)) and (step == 0 or abs(step) >= last / 2):
             return here if SMALLEST < here.k < largest else None
         last = abs(step)
-        there = _Misfit.at(D, min(max(here.k + step, SMALLEST), largest))
+        there = Misfit.at(D, min(max(here.k + step, SMALLEST), largest))
         while not there.squares <= SLACK * here.squares and abs(step) > SMALL_STEP:
             step /= 4
-            there = _Misfit.at(D, min(max(here.k + step, SMALLEST), largest))
+            there = Misfit.at(D, min(max(here.k + step, SMALLEST), largest))
         here = there
     return None
