@@ -4,7 +4,7 @@ Kalton and Ostrovskii: 2 d_GH is the least max(dis f, dis g, codis(f, g)) over m
 """
 
 import math
-from itertools import permutations
+from itertools import permutations, product
 
 
 def least_distortion(DX, DY):
@@ -60,3 +60,12 @@ def dilatation(DX, DY, f):
 def distortion(pairs, DX, DY):
     """Largest difference of the distances of two pairs."""
     return max(abs(DX[a][c] - DY[b][d]) for a, b in pairs for c, d in pairs)
+
+
+def least_map_distortion(DX, DY):
+    """Least distortion of a map X → Y, over all of them."""
+    n = len(DX)
+    return min(
+        max((abs(DX[i][j] - DY[f[i]][f[j]]) for i in range(n) for j in range(i)), default=0.0)
+        for f in product(range(len(DY)), repeat=n)
+    )

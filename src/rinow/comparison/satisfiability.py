@@ -122,11 +122,13 @@ class Satisfiability:
         """Where a space is homogeneous, place two points of the other one in it.
 
         For a homogeneous X: y0 belongs to x0, and y1 to a representative under the isometries that fix x0.  Other pairs
-        of y1 stay allowed: they may be needed to cover X.
+        of y1 stay allowed: they may be needed to cover X.  Where only X must be covered, y0 may belong to nothing: then
+        it is Y that must be homogeneous.
         """
-        if isometries is None or not self.engine.both or self.engine.kind == MAP:
+        if isometries is None:
             return
-        for symmetric, table in zip(isometries, (variables, variables.T), strict=True):
+        ways = list(zip(isometries, (variables, variables.T), strict=True))
+        for symmetric, table in ways if self.engine.both else ways[1:]:
             if not symmetric.trivial and len(symmetric.representatives([])) == 1 and table.shape[1] > 1:
                 counts = (table > 0).sum(axis=0)
                 y0, y1 = (int(y) for y in np.argsort(counts, kind="stable")[:2])
