@@ -59,14 +59,19 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     with noise the fits, which average over more data, win in any case.
     """
     estimate = sectional(mesh, quality=quality, **options)
-    if options.get("radius") is None:
-        estimate = with_detail(mesh, estimate)
-    if options.get("radius") is not None or estimate.noise is None or estimate.spacing is None:
+    if options.get("radius") is not None:
+        return estimate
+    return _with_edge_lengths(mesh, with_detail(mesh, estimate), quality)
+
+
+def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> Estimate:
+    k1, k2, noise, spacing = estimate.k1, estimate.k2, estimate.noise, estimate.spacing
+    if k1 is None or k2 is None or noise is None or spacing is None:
         return estimate
     risk = np.square(estimate.spread / CALIBRATION)
     chords = estimate.gaussian**2 * np.square(_chord_errors(mesh, estimate))
-    largest = np.fmax(np.fmax(np.abs(estimate.k1), np.abs(estimate.k2)), FLAT / estimate.spacing)
-    hopeful = (risk > np.fmax(chords, (RESOLVED * largest**2) ** 2)) & (estimate.noise < QUIET * estimate.spacing)
+    largest = np.fmax(np.fmax(np.abs(k1), np.abs(k2)), FLAT / spacing)
+    hopeful = (risk > np.fmax(chords, (RESOLVED * largest**2) ** 2)) & (noise < QUIET * spacing)
     hopeful &= ~mesh.topology.vertex_is_boundary
     if np.count_nonzero(hopeful) < WORTH[quality] * mesh.n_vertices:
         return estimate
