@@ -36,7 +36,7 @@ FLAT_DEFECT = 1e-10
 FLAT_RINGS = 3
 CALIBRATION = 1.25
 """Standard error over the root of the least risk: the noise is the least of many estimates, the fit the best."""
-EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 3, 4
+EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 4, 6
 """Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, worse placed."""
 AROUND = 2.2
 """Radius of these centres around, in radii a patch covers."""
