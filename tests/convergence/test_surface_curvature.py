@@ -74,3 +74,17 @@ def test_stars_of_chords_do_not_converge(surface, method):
     e = errors(surface, method)
     assert order(e) < 0.2
     assert e[-1] > 0.1
+
+
+@pytest.mark.parametrize("method", ("wald", "robinson"))
+@pytest.mark.parametrize("surface", ("sphere", "torus"))
+def test_stars_of_geodesic_distances_converge(surface, method):
+    # With r ~ √h the bias r² and the error of the polyhedron, (h/r)² or less, are of order 1 in h.
+    e = []
+    for n in (1000, 4000, 16000)[: 3 if method == "wald" else 2]:
+        shape = SURFACES[surface](n)
+        c = surface_curvature((shape.vertices, shape.faces), method=method, radius=n**-0.25)
+        assert (c.status == 0).all()
+        e.append(np.sqrt(np.mean((c.gaussian - shape.gaussian) ** 2) / np.mean(shape.gaussian**2)))
+    assert order(np.array(e)) > 0.8
+    assert e[-1] < 0.1

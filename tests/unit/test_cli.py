@@ -65,7 +65,7 @@ def test_curvature_writes_every_output_in_order(folder, capsys):
     assert b"1/mm" in (folder / "out.ply").read_bytes()
 
 
-@pytest.mark.parametrize("method", ["auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect"])
+@pytest.mark.parametrize("method", ["auto", "sectional", "lifted", "intrinsic", "wald", "robinson", "angle_defect"])
 def test_every_method_runs(folder, capsys, method):
     assert main(["curvature", "in.ply", "--method", method, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["counts"]["vertices"] == 4

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import shapes
+from metric_shapes import flat_torus, hyperbolic_patch
 from rinow import IntrinsicMesh, InvalidInputError, TriangleMesh, VertexStatus, surface_curvature
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.intrinsic import CALIBRATION, combination, intrinsic_curvature
@@ -19,39 +20,6 @@ def curvature(shape, **options):
 def relative_error(shape, **options):
     error = curvature(shape, **options).gaussian - shape.gaussian
     return np.sqrt(np.mean(error**2) / np.mean(shape.gaussian**2))
-
-
-def flat_torus(n=24):
-    """Lengths of a jittered triangulation of the unit square with opposite sides glued."""
-    rng = np.random.default_rng(7)
-    i, j = (x.ravel() for x in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
-    xy = (np.stack([i, j], 1) + rng.uniform(-0.25, 0.25, (n * n, 2))) / n
-
-    def corner(a, b):
-        return (a % n) * n + b % n
-
-    F = np.concatenate(
-        [np.stack([corner(i, j), corner(i + 1, j), corner(i + 1, j + 1)], 1),
-         np.stack([corner(i, j), corner(i + 1, j + 1), corner(i, j + 1)], 1)]
-    )  # fmt: skip
-    sides = np.stack([xy[F[:, (k + 1) % 3]] - xy[F[:, (k + 2) % 3]] for k in range(3)], 1)
-    return IntrinsicMesh(F, np.linalg.norm(sides - np.round(sides), axis=2))
-
-
-def hyperbolic_patch(n=1500):
-    """Distances between the points of an irregular disk of radius 1 in the plane of curvature -1."""
-    from scipy.spatial import Delaunay
-
-    rng = np.random.default_rng(7)
-    i = np.arange(n) + 0.5
-    r = np.sqrt(i / n) + rng.uniform(-0.2, 0.2, n) / np.sqrt(n)
-    phi = np.pi * (1 + 5**0.5) * i
-    klein = np.tanh(r)[:, None] * np.stack([np.cos(phi), np.sin(phi)], 1)  # geodesics are straight in these
-    F = Delaunay(klein).simplices
-    P = np.stack([np.sinh(r) * np.cos(phi), np.sinh(r) * np.sin(phi), np.cosh(r)], 1)
-    d = [P[F[:, (k + 1) % 3]] - P[F[:, (k + 2) % 3]] for k in range(3)]
-    chords = [np.sqrt(e[:, 0] ** 2 + e[:, 1] ** 2 - e[:, 2] ** 2) for e in d]
-    return IntrinsicMesh(F, 2 * np.arcsinh(np.stack(chords, 1) / 2)), r
 
 
 # ------------------------------------------------------------------ values

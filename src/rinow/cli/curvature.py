@@ -16,7 +16,7 @@ from rinow.study.surface import PERCENTILES, SIGN, SurfaceStudy, field_unit, mes
 __all__ = ["curvature", "write_picture"]
 
 Field = Literal["gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "spread"]
-Method = Literal["auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect"]
+Method = Literal["auto", "sectional", "lifted", "intrinsic", "wald", "robinson", "angle_defect"]
 
 
 def curvature(

@@ -15,6 +15,7 @@ from rinow.curvature.angle_defect import angle_defect
 from rinow.curvature.auto import auto
 from rinow.curvature.cut import one_sided
 from rinow.curvature.estimate import Estimate
+from rinow.curvature.geodesic_stars import geodesic_wald, robinson
 from rinow.curvature.intrinsic import intrinsic
 from rinow.curvature.lifted import lifted
 from rinow.curvature.notes import crease_notes, mesh_notes, weld_notes
@@ -30,8 +31,9 @@ Floats = NDArray[np.float64]
 
 INTRINSIC = {"angle_defect": angle_defect, "intrinsic": intrinsic, "wald": wald}
 BY_POSITIONS = {"auto": auto, "sectional": sectional}
-WITH_RADIUS = ("auto", "sectional", "intrinsic")
-METHODS = ("auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect")
+BY_LENGTHS = (*INTRINSIC, "robinson")
+WITH_RADIUS = ("auto", "sectional", "intrinsic", "wald", "robinson")
+METHODS = ("auto", "sectional", "lifted", "intrinsic", "wald", "robinson", "angle_defect")
 QUALITIES = ("best", "fast")
 NO_VALUE = (VertexStatus.ISOLATED, VertexStatus.DEGENERATE, VertexStatus.NONFINITE)
 SCALARS = ("gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "radius", "spread")
@@ -116,19 +118,21 @@ def surface_curvature(
     mesh : TriangleMesh, IntrinsicMesh, (V, F) pair, or object with vertices and faces
         The surface.  Vertices may be unused or not finite, faces degenerate, misoriented or not manifold: `status`
         tells where no value is defined.  A soup of separate triangles is welded for the computation.
-    method : {"auto", "sectional", "lifted", "intrinsic", "wald", "angle_defect"}, optional
+    method : {"auto", "sectional", "lifted", "intrinsic", "wald", "robinson", "angle_defect"}, optional
         "sectional" fits polynomials of order 2 to 8 to the deviations from an osculating torus; "lifted" takes the
         angles of the star after its edges were lifted to arcs; "intrinsic" averages angle defects; "wald" is the
-        embedding curvature of the star; "angle_defect" is the angle defect over a third of the area.  The last three
-        need edge lengths only and give `gaussian` only.  "auto" blends "sectional" and "intrinsic" at each vertex by
-        their expected errors; of a mesh without positions it is "intrinsic".  Order and scale are chosen at each
-        place from the data in all of these three.
+        embedding curvature of the star, or with `radius` of a star of geodesic distances; "robinson" is the mean of
+        Robinson's formula over quadruples of geodesic distances with a linear triple; "angle_defect" is the angle
+        defect over a third of the area.  The last four need edge lengths only and give `gaussian` only.  "auto" blends
+        "sectional" and "intrinsic" at each vertex by their expected errors; of a mesh without positions it is
+        "intrinsic".  Order and scale are chosen at each place from the data in all of these three.
     quality : {"best", "fast"}, optional
         "fast" lets a sample of the vertices decide about order and scale around it, with fewer patches, and is
         several times faster; for "sectional" and "auto".
     radius : float, optional
-        Radius of all balls of "sectional" and "auto", or of the averages of "intrinsic", positive, in the unit of
-        length; by default the data decide.
+        Radius of all balls of "sectional" and "auto", of the averages of "intrinsic", or of the stars of "wald" and
+        "robinson", positive, in the unit of length.  By default the data decide; "wald" takes the triangles around
+        each vertex, "robinson" four local spacings.
     progress : callable, optional
         Called with the number of vertices done and their total.
     executor : Executor, optional
@@ -185,7 +189,7 @@ def surface_curvature(
     status = vertex_status(surface)
     status[on_crease & (status == VertexStatus.OK)] = VertexStatus.BOUNDARY
     result = _assembled(estimate, status, chosen)
-    notes += mesh_notes(surface, oriented=chosen not in INTRINSIC) + crease_notes(on_crease)
+    notes += mesh_notes(surface, oriented=chosen not in BY_LENGTHS) + crease_notes(on_crease)
     return replace(_relabelled(_rescaled(result, unit), index), notes=notes)
 
 
@@ -233,6 +237,10 @@ def _estimate(
         return one_sided(BY_POSITIONS[method], as_triangle_mesh(mesh), **options)
     if method == "intrinsic":
         estimate = intrinsic(mesh, radius=radius)
+    elif method == "robinson":
+        estimate = robinson(mesh, radius)
+    elif radius is not None:
+        estimate = geodesic_wald(mesh, radius)
     else:
         estimate = INTRINSIC[method](mesh) if method in INTRINSIC else lifted(as_triangle_mesh(mesh))
     if progress is not None:

@@ -1,0 +1,197 @@
+"""Curvature of a surface by geodesic distances around each vertex: stars, and quadruples with a linear triple."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from rinow.curvature.estimate import Estimate
+from rinow.curvature.flow import CurvatureFlow
+from rinow.curvature.wald import wald
+from rinow.geodesics.exact import ExactGeodesics, GeodesicBalls
+from rinow.kernels import geodesic_stars as kernels
+from rinow.kernels import patch_order
+from rinow.mesh import IntrinsicMesh, TriangleMesh
+
+__all__ = ["geodesic_wald", "robinson"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+PATCH, BLOCK = 200, 4096
+"""Vertices of a patch, in whose order they are taken, and those whose balls are held at a time."""
+SPACINGS = 4.0
+"""Default radius of `robinson`, in local spacings."""
+INNER = 0.7
+"""Radius of the star that one is compared with, over its own."""
+PASSES = 3
+"""Repetitions of the mean over a ring that average squared differences."""
+CALIBRATION = 1.5
+"""Spread over that mean difference: the error of order radius² is twice the difference, that of noise below it."""
+SLACK = 1.3
+"""Radius of balls in which the distances between ends are looked for, over those distances in the plane."""
+ORDER = 2
+"""Of Robinson's formula: with the next term of its series."""
+
+
+class _Ends(NamedTuple):
+    """Ends of four lines through some centres, a row of eight each; -1 and nan for none."""
+
+    vertices: Indices
+    distances: Floats
+    directions: Floats
+    totals: Floats
+    """Angles around the centres."""
+    bends: Floats
+    """(n, 4): angles of the second ends beyond the straight continuation of the first."""
+    radii: Floats
+
+
+Method = Callable[[ExactGeodesics, _Ends], Floats]
+
+
+def geodesic_wald(mesh: TriangleMesh | IntrinsicMesh, radius: float) -> Estimate:
+    r"""Curvature k of the surface S_k in which a star of geodesic distances around each vertex closes up.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh or IntrinsicMesh
+        The surface; only edge lengths are used.
+    radius : float
+        Radius of the stars.
+
+    Returns
+    -------
+    estimate : Estimate
+        `gaussian` is nan at the boundary and at vertices that are not manifold.  Near the boundary the radius is the
+        distance from it, and a vertex with too few others so near has the curvature of its ring.  `spread` is 1.5
+        times the root of the mean square, around each vertex, of the difference from the star of 0.7 times the radius.
+
+    Notes
+    -----
+    A star has up to eight vertices near the distance `radius`, in about equal directions; its sides and the chords
+    between neighbours are exact geodesic distances.  The value is the only k at which the comparison angles at the
+    centre sum to 2π (Wald), which by Gauss and Bonnet is a mean of the curvature within.  On a mesh of a smooth surface
+    with edges of length h its error is of second order in `radius`, plus one of `(h/radius)²` or less: it converges if
+    the radius tends to 0 more slowly than h.
+    """
+    ring = wald(mesh)
+    values, radii = _both(mesh, np.full(mesh.n_vertices, radius), _star_values)
+    small = np.isfinite(ring.gaussian) & np.isnan(values[0])
+    values[0, small] = ring.gaussian[small]
+    radii[small] = ring.radius[small]
+    estimate = _estimate(mesh, values, radii)
+    estimate.spread[small] = ring.spread[small]
+    return estimate
+
+
+def robinson(mesh: TriangleMesh | IntrinsicMesh, radius: float | None = None) -> Estimate:
+    r"""Mean of Robinson's rational formula over quadruples of geodesic distances with a linear triple at each vertex.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh or IntrinsicMesh
+        The surface; only edge lengths are used.
+    radius : float, optional
+        Distance of the points of the quadruples from the vertex; four local spacings by default.
+
+    Returns
+    -------
+    estimate : Estimate
+        As for `geodesic_wald`, but nan where too few vertices are in reach.
+
+    Notes
+    -----
+    Each of four lines through the vertex v has the ends a and b; q is an end of the line across it.  (a, v, b, q) is a
+    quadruple with v between a and b, once b has been turned about v onto the straight continuation of av, which halves
+    the angle around v: b is chosen so that the turn is small, and its distance from q follows from that in the plane
+    triangle (v, b, q), whose angle grows by the turn.  The value is the mean over both ends of all four lines, which
+    by its symmetry has an error of second order in the radius.
+    """
+    sizes = SPACINGS * CurvatureFlow(mesh).spacing if radius is None else np.full(mesh.n_vertices, radius)
+    values, radii = _both(mesh, sizes, _robinson_values)
+    return _estimate(mesh, values, radii)
+
+
+def _both(mesh: TriangleMesh | IntrinsicMesh, sizes: Floats, method: Method) -> tuple[Floats, Floats]:
+    """(2, n): values of the radii and of smaller ones; (n,): radii used."""
+    t, geodesics = mesh.topology, ExactGeodesics(mesh)
+    order = patch_order.patch_order(t.neighbour_offsets, t.neighbours, PATCH)
+    is_inner = t.vertex_is_manifold & ~t.vertex_is_boundary & np.isfinite(sizes) & (sizes > 0.0)
+    centres = order[is_inner[order]]
+    values, radii = np.full((2, mesh.n_vertices), np.nan), np.full(mesh.n_vertices, np.nan)
+    for start in range(0, len(centres), BLOCK):
+        block = centres[start : start + BLOCK]
+        balls = geodesics.polar(block, max_distance=kernels.FARTHEST * sizes[block])
+        for row, share in enumerate((1.0, INNER)):
+            ends = _ends(balls, t.vertex_is_boundary, sizes[block], share)
+            values[row, block] = method(geodesics, ends)
+            if row == 0:
+                radii[block] = ends.radii
+    return values, radii
+
+
+def _ends(balls: GeodesicBalls, is_boundary: NDArray[np.bool_], sizes: Floats, share: float) -> _Ends:
+    n, radii = len(sizes), sizes.copy()
+    entries, bends = np.full((n, 2 * kernels.LINES), -1, np.intp), np.full((n, kernels.LINES), np.nan)
+    ball = balls.vertices, balls.distances, balls.directions
+    kernels.choose_ends(ball, balls.offsets, balls.total_angles, is_boundary, share, radii, entries, bends)
+    found = entries >= 0
+    vertices = np.where(found, balls.vertices[entries], -1)
+    distances, directions = (np.where(found, x[entries], np.nan) for x in (balls.distances, balls.directions))
+    return _Ends(vertices, distances, directions, balls.total_angles, bends, radii)
+
+
+def _distances_between(geodesics: ExactGeodesics, ends: _Ends, first: Indices, second: Indices) -> Floats:
+    """(n, k): geodesic distances between the ends in the columns `first` and `second`, (k,) or (n, k); nan for none."""
+    rows = np.arange(len(ends.radii))[:, None]
+    a, b = ends.vertices[rows, first], ends.vertices[rows, second]
+    p, q = ends.distances[rows, first], ends.distances[rows, second]
+    turns = ends.directions[rows, second] - ends.directions[rows, first]
+    with np.errstate(invalid="ignore"):
+        plane = np.sqrt(p * p + q * q - 2 * p * q * np.cos(turns * (2 * np.pi / ends.totals[:, None])))
+    known = np.isfinite(plane)
+    sources, place = np.unique(a[known], return_inverse=True)
+    reach = np.zeros(len(sources))
+    np.maximum.at(reach, place, SLACK * plane[known])
+    near = csr_array(geodesics.distances(sources, max_distance=reach))
+    out = np.full(a.shape, np.nan)
+    found = np.empty(len(place))
+    kernels.look_up(near.indptr, near.indices, near.data, place.astype(np.intp), b[known], found)
+    out[known] = found
+    return out
+
+
+def _star_values(geodesics: ExactGeodesics, ends: _Ends) -> Floats:
+    """Embedding curvature of the star of the different ends of each centre."""
+    n, size = ends.vertices.shape
+    order, counts = np.empty((n, size), np.intp), np.empty(n, np.intp)
+    kernels.order_stars(ends.vertices, ends.directions, ends.totals, order, counts)
+    columns = np.arange(size)
+    following = np.where(columns + 1 < counts[:, None], np.roll(order, -1, axis=1), order[:, :1])
+    chords = _distances_between(geodesics, ends, order, following)
+    values = np.empty(n)
+    kernels.star_values(counts, np.take_along_axis(ends.distances, order, axis=1), chords, values)
+    return values
+
+
+def _robinson_values(geodesics: ExactGeodesics, ends: _Ends) -> Floats:
+    """Mean of Robinson's approximations over the lines of each centre."""
+    first, second = np.array([(k + 4 * e, k + 2 + 4 * f) for k in range(2) for e in range(2) for f in range(2)]).T
+    across = _distances_between(geodesics, ends, first, second).reshape(-1, 2, 2, 2)
+    values = np.empty(len(across))
+    kernels.robinson_values(ends.distances, across, ends.bends, ORDER, values)
+    return values
+
+
+def _estimate(mesh: TriangleMesh | IntrinsicMesh, values: Floats, radii: Floats) -> Estimate:
+    """The values of the larger radius; their spread from those of the smaller one."""
+    squares = CurvatureFlow(mesh).means((values[0] - values[1]) ** 2, PASSES)
+    spread = CALIBRATION * np.sqrt(squares)
+    missing = np.isnan(values[0])
+    radii[missing], spread[missing] = np.nan, np.nan
+    return Estimate(values[0].copy(), spread, radii)
