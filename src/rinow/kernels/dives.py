@@ -185,24 +185,26 @@ def best_partner(row, other, own_places, other_places, n_pairs):
 
 
 @kernel
-def complete(dive, f, g):
-    """Write the partners to f and g; those left over get the partner with the least worst discrepancy."""
-    n, m = f.shape[0], g.shape[0]
-    xs, ys, n_pairs = np.empty(n + m, np.int64), np.empty(n + m, np.int64), 0
-    for v in range(n + m):
+def pairs_made(dive, xs, ys):
+    """Write the pairs of the points that have a partner; their number."""
+    n, n_pairs = dive.X.shape[0], 0
+    for v in range(dive.partners.shape[0]):
         if dive.partners[v] >= 0:
             xs[n_pairs], ys[n_pairs] = (v, dive.partners[v]) if v < n else (dive.partners[v], v - n)
             n_pairs += 1
-    for v in range(n + m):
-        partner = dive.partners[v]
-        if partner < 0 and v < n:
-            partner = best_partner(dive.X[v], dive.Y, xs, ys, n_pairs)
-        elif partner < 0:
-            partner = best_partner(dive.Y[v - n], dive.X, ys, xs, n_pairs)
+    return n_pairs
+
+
+@parallel_kernel
+def complete(dive, xs, ys, places, out):
+    """Write for each listed place the partner with the least worst discrepancy to the given pairs."""
+    n = dive.X.shape[0]
+    for i in prange(places.shape[0]):
+        v = places[i]
         if v < n:
-            f[v] = partner
+            out[i] = best_partner(dive.X[v], dive.Y, xs, ys, xs.shape[0])
         else:
-            g[v - n] = partner
+            out[i] = best_partner(dive.Y[v - n], dive.X, ys, xs, xs.shape[0])
 
 
 @kernel
