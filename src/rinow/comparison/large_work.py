@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,7 @@ Flags = NDArray[np.bool_]
 BALLS = 4
 """Pairs in conflict around which a repair takes out others too."""
 
-EXAMINED = 400_000_000
+EXAMINED = 100_000_000
 """Distances that may be examined between two looks at the clock; most partners are given up after a few."""
 
 MOST_ORPHANS = 700
@@ -95,7 +96,12 @@ class Work:
     ) -> Maps | None:
         state = self._state(partners, first)
         t, step = np.float32(level / self.scale), 1
-        dive_kernels.begin(state, self._apart <= level, xs, ys, t)
+        possible, places = self._apart <= level, np.flatnonzero(partners == dive_kernels.UNDECIDED)
+        for part in self._parts(places, len(xs), clock):
+            dive_kernels.list_partners(part, self.X, self.Y, possible, xs, ys, t, self._lists, self._counts)
+        if clock.over:
+            return None
+        dive_kernels.begin(state)
         while dive_kernels.descend(state, t, step, MOST_ORPHANS):
             if clock.over:
                 return None
@@ -125,15 +131,19 @@ class Work:
         xs, ys = np.empty(most, np.int64), np.empty(most, np.int64)
         n_pairs = dive_kernels.pairs_made(state, xs, ys)
         partners = state.partners.astype(np.int64)
-        places = np.flatnonzero(partners < 0)
-        step = max(2, EXAMINED // (max(n, most - n) * n_pairs + 1))
+        for part in self._parts(np.flatnonzero(partners < 0), n_pairs, clock):
+            found = np.empty(len(part), np.int64)
+            dive_kernels.complete(part, self.X, self.Y, xs[:n_pairs], ys[:n_pairs], found)
+            partners[part] = found
+        return Maps(partners[:n], partners[n:]) if (partners >= 0).all() else None
+
+    def _parts(self, places: Indices, n_pairs: int, clock: Clock) -> Iterator[Indices]:
+        """Parts of the places, to be held against so many pairs, until the time is over."""
+        step = max(2, EXAMINED // (self._lists.shape[1] * n_pairs + 1))
         for start in range(0, len(places), step):
             if clock.over:
-                return None
-            part, found = places[start : start + step], np.empty(len(places[start : start + step]), np.int64)
-            dive_kernels.complete(state, xs[:n_pairs], ys[:n_pairs], part, found)
-            partners[part] = found
-        return Maps(partners[:n], partners[n:])
+                return
+            yield places[start : start + step]
 
 
 def farthest_points(D: Floats, k: int) -> Indices:
