@@ -185,6 +185,29 @@ def test_distance_matrix_in_threads_is_the_same():
     assert (parallel.upper == distance_matrix(spaces).upper).all()
 
 
+def test_hausdorff_distances_of_point_sets_and_meshes():
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    faces = [[0, 1, 2], [0, 2, 3]]
+    lifted = square + np.array([0.0, 0.0, 3.0])
+    points = distance_matrix([square, lifted, square[:3]], metric="hausdorff")
+    assert (points.lower == points.upper).all()
+    assert points.upper.tolist() == [[0, 3, 1], [3, 0, math.sqrt(10)], [1, math.sqrt(10), 0]]
+    mixed = distance_matrix([(square, faces), (lifted, faces)], metric="hausdorff", tolerance=1e-6)
+    assert mixed.lower[0, 1] <= 3 <= mixed.upper[0, 1] <= mixed.lower[0, 1] + 1e-6 * math.sqrt(2)
+    with pytest.raises(InvalidInputError, match=r"spaces\[1\]\[0, 1\] = nan is not finite"):
+        distance_matrix([square, [[0.0, math.nan, 0.0]]], metric="hausdorff")
+    flat = square[:, :2]
+    with pytest.raises(InvalidInputError, match="A has points of dimension 2, B of dimension 3"):
+        distance_matrix([square, flat], metric="hausdorff")
+
+
+def test_gromov_hausdorff_distances_of_meshes():
+    V, F = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), [[0, 1, 2], [0, 2, 3]]
+    result = distance_matrix([(V, F), (3 * V, F), [[0.0]]])
+    assert result.upper[0, 2] == result.lower[0, 2] == 1.0  # two corners have two edges between them
+    assert result.upper[0, 1] == 2.0  # the diameters differ by 4
+
+
 def test_bad_collections():
     with pytest.raises(InvalidInputError, match="spaces is empty"):
         distance_matrix([])

@@ -32,7 +32,7 @@ def grid(n, height=0.0):
 def test_isometries_of_a_polygon_form_its_dihedral_group():
     steps = np.abs(np.subtract.outer(np.arange(9), np.arange(9)))
     D = np.minimum(steps, 9 - steps).astype(float)
-    found = isometries(D)
+    found = isometries(D, Clock(math.inf))
     assert len(found.images) == len({tuple(f) for f in found.images}) == 18
     assert found.error == 0.0
     for f in found.images:
@@ -42,13 +42,13 @@ def test_isometries_of_a_polygon_form_its_dihedral_group():
 
 
 def test_isometries_of_a_generic_space_are_trivial():
-    assert isometries(squareform(pdist(np.random.default_rng(2).random((30, 2))))).trivial
+    assert isometries(squareform(pdist(np.random.default_rng(2).random((30, 2)))), Clock(math.inf)).trivial
 
 
 def test_isometries_up_to_rounding_know_their_error():
     angle = np.arange(7) * (2 * math.pi / 7)
     D = squareform(pdist(np.stack([np.cos(angle), np.sin(angle)], axis=1)))
-    found = isometries(D)
+    found = isometries(D, Clock(math.inf))
     assert len(found.images) == 14
     assert 0 < found.error < 1e-14
 
@@ -83,7 +83,7 @@ def test_extended_maps_keep_their_pairs():
     rng = np.random.default_rng(34)
     X, Y = squareform(pdist(rng.random((20, 2)))), squareform(pdist(rng.random((25, 2))))
     xs, ys = np.array([3, 5, 8]), np.array([1, 0, 7])
-    maps = Work(X, Y).extended(xs, ys)
+    maps = Work(X, Y).extended(xs, ys, Clock(math.inf))
     assert (maps.f[xs] == ys).all()
     assert (maps.g[ys] == xs).all()
     pairs, value = Work(X, Y).measured(maps)

@@ -196,7 +196,7 @@ def _improve(
     """Bounds and a tabu search, unless the interval decides already; None if it does or the time is over."""
     if interval.upper <= wanted or interval.lower > hopeless or clock.over:
         return None
-    engine = Engine(DX, DY)
+    engine = Engine(DX, DY, clock=clock)
     interval.raise_lower(engine.row_bound, "sorted distances")
     interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
     if interval.lower <= hopeless:

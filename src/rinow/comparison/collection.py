@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from rinow._executor import Executor, SerialExecutor
 from rinow.comparison.correspondence import uniform_distance
 from rinow.comparison.gromov_hausdorff import gromov_hausdorff
+from rinow.comparison.hausdorff import as_point_set, hausdorff_distance
 from rinow.comparison.lipschitz import lipschitz_distance
 from rinow.errors import InvalidInputError
+from rinow.mesh import as_mesh, as_triangle_mesh, is_mesh_like
 from rinow.metric_space import as_metric_space
 
 __all__ = ["DistanceMatrix", "distance_matrix"]
@@ -42,14 +44,16 @@ def distance_matrix(
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
     time_limit: float = 60.0,
+    tolerance: float = 1e-4,
 ) -> DistanceMatrix:
-    """Distances between all pairs of a collection of metric spaces.
+    """Distances between all pairs of a collection of metric spaces, or of sets in one space.
 
     Parameters
     ----------
     spaces : iterable of N spaces
-        What the chosen function takes: `MetricSpace` or distance matrices, each checked once.
-    metric : {"gromov_hausdorff", "lipschitz", "uniform"}
+        What the chosen function takes, each checked once: `MetricSpace` or distance matrices, for "gromov_hausdorff"
+        also meshes; for "hausdorff" arrays of points, or meshes, all in one Euclidean space.
+    metric : {"gromov_hausdorff", "hausdorff", "lipschitz", "uniform"}
         Which distance.
     executor : Executor, optional
         Where the pairs are compared: anything with a ``map`` like that of `concurrent.futures`; a pool of processes
@@ -57,7 +61,9 @@ def distance_matrix(
     progress : callable, optional
         Called with the numbers of pairs done and in all after each pair.
     time_limit : float, default 60
-        Seconds for each pair.
+        Seconds for each pair; the Hausdorff distance has no limit.
+    tolerance : float, default 1e-4
+        Greatest ``upper - lower`` of the Hausdorff distance of surfaces, relative to the diagonal.
 
     Returns
     -------
@@ -67,13 +73,13 @@ def distance_matrix(
     Raises
     ------
     InvalidInputError
-        If `metric` is unknown, there is no space, or one is not valid.
+        If `metric` is unknown, there is no space, one is not valid, or the dimensions differ.
     NotAMetricError
         If a matrix is not a metric.
 
     See Also
     --------
-    gromov_hausdorff, lipschitz_distance, uniform_distance
+    gromov_hausdorff, hausdorff_distance, lipschitz_distance, uniform_distance
 
     Examples
     --------
@@ -86,13 +92,18 @@ def distance_matrix(
     """
     if metric not in _METRICS:
         raise InvalidInputError(f"metric = {metric!r} is unknown; give one of {', '.join(map(repr, _METRICS))}.")
-    checked = [as_metric_space(space) for space in spaces]
+    check, compare = _METRICS[metric]
+    checked = [check(space, f"spaces[{i}]") for i, space in enumerate(spaces)]
     if not checked:
         raise InvalidInputError("spaces is empty; give at least one space.")
     pairs = [(i, j) for i in range(len(checked)) for j in range(i)]
     lower, upper = np.zeros((2, len(checked), len(checked)))
     results = (executor or SerialExecutor()).map(
-        _METRICS[metric], [checked[i] for i, _ in pairs], [checked[j] for _, j in pairs], [time_limit] * len(pairs)
+        compare,
+        [checked[i] for i, _ in pairs],
+        [checked[j] for _, j in pairs],
+        [time_limit] * len(pairs),
+        [tolerance] * len(pairs),
     )
     for done, ((i, j), (low, high)) in enumerate(zip(pairs, results, strict=True), start=1):
         lower[i, j] = lower[j, i] = low
@@ -102,23 +113,41 @@ def distance_matrix(
     return DistanceMatrix(lower, upper)
 
 
-def _gromov_hausdorff(X: Any, Y: Any, time_limit: float) -> tuple[float, float]:
+def _space(value: Any, name: str) -> Any:
+    return as_metric_space(value)
+
+
+def _space_or_mesh(value: Any, name: str) -> Any:
+    return as_mesh(value) if is_mesh_like(value) else as_metric_space(value)
+
+
+def _set(value: Any, name: str) -> Any:
+    return as_triangle_mesh(value) if is_mesh_like(value) else as_point_set(value, name)
+
+
+def _gromov_hausdorff(X: Any, Y: Any, time_limit: float, tolerance: float) -> tuple[float, float]:
     result = gromov_hausdorff(X, Y, time_limit=time_limit)
     return result.lower, result.upper
 
 
-def _lipschitz(X: Any, Y: Any, time_limit: float) -> tuple[float, float]:
+def _hausdorff(X: Any, Y: Any, time_limit: float, tolerance: float) -> tuple[float, float]:
+    result = hausdorff_distance(X, Y, tolerance=tolerance)
+    return result.lower, result.upper
+
+
+def _lipschitz(X: Any, Y: Any, time_limit: float, tolerance: float) -> tuple[float, float]:
     result = lipschitz_distance(X, Y, time_limit=time_limit)
     return result.lower, result.upper
 
 
-def _uniform(X: Any, Y: Any, time_limit: float) -> tuple[float, float]:
+def _uniform(X: Any, Y: Any, time_limit: float, tolerance: float) -> tuple[float, float]:
     value = uniform_distance(X, Y)
     return value, value
 
 
-_METRICS: dict[str, Callable[[Any, Any, float], tuple[float, float]]] = {
-    "gromov_hausdorff": _gromov_hausdorff,
-    "lipschitz": _lipschitz,
-    "uniform": _uniform,
+_METRICS: dict[str, tuple[Callable[[Any, str], Any], Callable[[Any, Any, float, float], tuple[float, float]]]] = {
+    "gromov_hausdorff": (_space_or_mesh, _gromov_hausdorff),
+    "hausdorff": (_set, _hausdorff),
+    "lipschitz": (_space, _lipschitz),
+    "uniform": (_space, _uniform),
 }

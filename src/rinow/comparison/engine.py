@@ -7,6 +7,9 @@ ratios) and maps; only the compatibility of two pairs differs.  What it refutes 
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,6 +36,9 @@ TABLE_BYTES = 3 << 29
 UNLIMITED = 1 << 62
 """Work of a propagation that is small enough to be finished."""
 
+BLOCK = 20_000_000
+"""Distances compared or written between two looks at the clock: some tenths of a second."""
+
 SERIAL_WORK = 2_000_000
 """Number of pairs times n + m below which a second thread costs more than it saves."""
 
@@ -41,6 +47,15 @@ def worst_of(kind: int, DX: Floats, DY: Floats, pairs: Indices) -> float:
     """Largest discrepancy between two pairs of a relation: its distortion, or for bijections the largest ratio."""
     xs, ys = np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
     return float(distortion.largest_discrepancy(kind, DX, DY, xs, ys))
+
+
+def blocks(n: int, work: int, clock: Clock) -> Iterator[slice]:
+    """Parts of n items of so much work each, one after the other until the time is over."""
+    step = max(1, BLOCK // work)
+    for start in range(0, n, step):
+        if clock.over:
+            return
+        yield slice(start, min(n, start + step))
 
 
 def sorted_rows(D: Floats) -> compatibility.SortedRows:
@@ -55,16 +70,22 @@ def sorted_rows(D: Floats) -> compatibility.SortedRows:
 
 
 class Engine:
-    """Two spaces, a kind of compatibility, and whether the points of Y must be covered too (`both`)."""
+    """Two spaces, a kind of compatibility, and whether the points of Y must be covered too (`both`).
 
-    def __init__(self, DX: Floats, DY: Floats, kind: int = RELATION, *, both: bool = True) -> None:
+    When the time is over before all rows are compared, the levels of the rest are 0, which excludes nothing.
+    """
+
+    def __init__(
+        self, DX: Floats, DY: Floats, kind: int = RELATION, *, both: bool = True, clock: Clock | None = None
+    ) -> None:
         self.DX, self.DY, self.kind, self.both = DX, DY, kind, both
         self.X, self.Y = sorted_rows(DX), sorted_rows(DY)
         self.shape = len(DX), len(DY)
-        self.row_levels = np.empty(self.shape)
+        self.row_levels = np.full(self.shape, float(kind == BIJECTION))
         small = self.row_levels.size * sum(self.shape) < SERIAL_WORK
         write = compatibility.row_discrepancies if small else compatibility.many_row_discrepancies
-        write(kind, both, self.X.distances, self.Y.distances, self.row_levels)
+        for part in blocks(len(DX), len(DY) * sum(self.shape), clock or Clock(math.inf)):
+            write(kind, both, self.X.distances[part], self.Y.distances, self.row_levels[part])
 
     @property
     def row_bound(self) -> float:
@@ -92,7 +113,7 @@ class Engine:
             return None
         if not self.fits(possible) or clock.over:
             return possible
-        state = State(self, possible, level)
+        state = State(self, possible, level, clock)
         return state.possible() if state.sweep(clock) else None
 
     def fits(self, possible: Flags) -> bool:
@@ -103,7 +124,7 @@ class Engine:
 class State:
     """Possible pairs as bitsets, with their runs at one level."""
 
-    def __init__(self, engine: Engine, possible: Flags, level: float) -> None:
+    def __init__(self, engine: Engine, possible: Flags, level: float, clock: Clock) -> None:
         n, m = engine.shape
         self.engine, self.level = engine, level
         self.pairs = np.argwhere(possible)
@@ -120,14 +141,20 @@ class State:
         )
         self.weights = np.ones(n + m)
         self._small = len(self.pairs) * (n + m) < SERIAL_WORK
-        self.set_level(level)
+        self.set_level(level, clock)
 
-    def set_level(self, level: float) -> None:
-        """Write the runs for a level; deletions made at a higher one stay right."""
+    def set_level(self, level: float, clock: Clock) -> None:
+        """Write the runs for a level; deletions made at a higher one stay right.
+
+        `ready` tells whether the time sufficed: without all runs nothing can be concluded.
+        """
         e = self.engine
-        self.level = level
+        self.level, written = level, 0
         write = compatibility.write_runs if self._small else compatibility.write_many_runs
-        write(e.kind, e.X, e.Y, level, self.pairs, self.runs.over_x, self.runs.over_y)
+        for part in blocks(len(self.pairs), sum(e.shape), clock):
+            write(e.kind, e.X, e.Y, level, self.pairs[part], self.runs.over_x[part], self.runs.over_y[part])
+            written = part.stop
+        self.ready = written == len(self.pairs)
 
     def possible(self) -> Flags:
         """The possible pairs as a matrix."""
@@ -138,6 +165,8 @@ class State:
     def sweep(self, clock: Clock) -> bool:
         """Arc consistency of everything, or as far as the time reaches; whether it does not refute the level."""
         e, relation, queue = self.engine, self.relation, self.queue
+        if not self.ready:
+            return True
         if self._small:
             emptied, _ = correspondences.propagate(
                 relation, queue, self.runs, e.X, e.Y, e.both, self.weights, UNLIMITED
@@ -160,10 +189,15 @@ class Search:
     """Branch and bound among the possible pairs, from a consistent state on."""
 
     def __init__(
-        self, engine: Engine, possible: Flags, level: float, isometries: tuple[Indices, Indices] | None = None
+        self,
+        engine: Engine,
+        possible: Flags,
+        level: float,
+        clock: Clock,
+        isometries: tuple[Indices, Indices] | None = None,
     ) -> None:
         n, m = engine.shape
-        self.state = State(engine, possible, level)
+        self.state = State(engine, possible, level, clock)
         correspondences.clear(self.state.queue)
         self.engine, relation = engine, self.state.relation
         depth = n + m + 1
@@ -188,7 +222,7 @@ class Search:
     def run(self, clock: Clock) -> tuple[bool, Indices | None]:
         """Search on until the time is over; whether all is refuted at the level, and a relation that fits it."""
         s = self.state
-        while not clock.over:
+        while s.ready and not clock.over:
             status = correspondence_search.search(
                 self._problem, s.relation, s.queue, self._stack, self._progress, s.weights, self._f, self._g, SLICE
             )
@@ -214,9 +248,9 @@ class Search:
         correspondences.unpack(root, out)
         return out
 
-    def lower_level(self, level: float) -> None:
+    def lower_level(self, level: float, clock: Clock) -> None:
         """Go on at a lower level."""
-        self.state.set_level(level)
+        self.state.set_level(level, clock)
         self._progress[correspondence_search.VERSION] += 1
 
     def _pairs(self) -> Indices:

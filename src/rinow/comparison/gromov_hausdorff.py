@@ -176,7 +176,7 @@ def _compare(DX: Floats, DY: Floats, clock: Clock, rtol: float) -> Interval:
         return interval
     interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
     if len(DX) * len(DY) * (len(DX) + len(DY)) < large.LARGE:
-        engine = Engine(DX, DY)
+        engine = Engine(DX, DY, clock=clock)
         interval.raise_lower(engine.row_bound, "sorted distances")
         steps.close(engine, interval, clock)
     else:

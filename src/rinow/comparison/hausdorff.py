@@ -125,17 +125,17 @@ def hausdorff_distance(A: Any, B: Any, *, space: Any = None, tolerance: float = 
         return _between_subsets(as_metric_space(space).distances, A, B)
     if is_mesh_like(A) or is_mesh_like(B):
         return _between_surfaces(_as_surface(A, "A"), _as_surface(B, "B"), tolerance)
-    P, Q = _as_point_set(A, "A"), _as_point_set(B, "B")
+    P, Q = as_point_set(A, "A"), as_point_set(B, "B")
     if P.shape[1] != Q.shape[1]:
         raise InvalidInputError(f"A has points of dimension {P.shape[1]}, B of dimension {Q.shape[1]}; give the same.")
     return _between_points(P, Q)
 
 
 def _as_surface(value: Any, name: str) -> TriangleMesh | Floats:
-    return as_triangle_mesh(value) if is_mesh_like(value) else _as_point_set(value, name, 3)
+    return as_triangle_mesh(value) if is_mesh_like(value) else as_point_set(value, name, 3)
 
 
-def _as_point_set(points: Any, name: str, dimension: int | None = None) -> Floats:
+def as_point_set(points: Any, name: str, dimension: int | None = None) -> Floats:
     """At least one finite point."""
     P = as_points(points, name, dimension)
     if not len(P):

@@ -69,7 +69,9 @@ def approach(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
         if interval.closed or clock.over:
             return
         if k == DIVES_BEFORE_NETS and interval.upper > LOOSENESS * interval.lower:
-            _tighten(work, _from_nets(work, interval, clock.part(0.15 * clock.left)), interval, clock)
+            maps = _from_nets(work, interval, clock)
+            if maps is not None:
+                _tighten(work, maps, interval, clock)
         maps = work.dive(level, n_first, clock.part(0.2 * clock.left))
         if maps is None:
             continue
@@ -79,21 +81,22 @@ def approach(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
             _tighten(work, better or maps, interval, clock)
 
 
-def _from_nets(work: Work, interval: Interval, clock: Clock) -> Maps:
-    """The best relation of two nets found by tabu search, extended to all points."""
+def _from_nets(work: Work, interval: Interval, clock: Clock) -> Maps | None:
+    """The best relation of two nets found by tabu search, extended to all points; None if the time does not suffice."""
+    search_clock = clock.part(0.15 * clock.left)
     xs, ys = farthest_points(work.DX, NET), farthest_points(work.DY, NET)
     NX, NY = work.DX[np.ix_(xs, xs)], work.DY[np.ix_(ys, ys)]
     rng = np.random.default_rng(22)
     best = RelationTabu(NX, NY, rng.integers(len(ys), size=len(xs)), rng.integers(len(xs), size=len(ys)), 0)
-    best.run(NET_MOVES, clock)
+    best.run(NET_MOVES, search_clock)
     for seed in range(1, 8):
         f, g = rng.integers(len(ys), size=len(xs)), rng.integers(len(xs), size=len(ys))
         search = RelationTabu(NX, NY, f, g, seed)
-        search.run(NET_MOVES, clock, interval.lower)
+        search.run(NET_MOVES, search_clock, interval.lower)
         best = search if search.best < best.best else best
-        if clock.over:
+        if search_clock.over:
             break
-    return work.extended(xs[best.pairs[:, 0]], ys[best.pairs[:, 1]])
+    return work.extended(xs[best.pairs[:, 0]], ys[best.pairs[:, 1]], clock)
 
 
 def _bound_by_rows(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:

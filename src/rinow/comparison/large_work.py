@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,9 @@ Flags = NDArray[np.bool_]
 
 BALLS = 4
 """Pairs in conflict around which a repair takes out others too."""
+
+EXAMINED = 100_000_000
+"""Distances that may be examined between two looks at the clock; most partners are given up after a few."""
 
 MOST_ORPHANS = 700
 """Points a dive may leave over."""
@@ -92,21 +96,29 @@ class Work:
     ) -> Maps | None:
         state = self._state(partners, first)
         t, step = np.float32(level / self.scale), 1
-        dive_kernels.begin(state, self._apart <= level, xs, ys, t)
+        possible, places = self._apart <= level, np.flatnonzero(partners == dive_kernels.UNDECIDED)
+        for part in self._parts(places, len(xs), clock):
+            dive_kernels.list_partners(part, self.X, self.Y, possible, xs, ys, t, self._lists, self._counts)
+        if clock.over:
+            return None
+        dive_kernels.begin(state)
         while dive_kernels.descend(state, t, step, MOST_ORPHANS):
             if clock.over:
                 return None
             step = 8 if self._counts.sum() < 40 * len(partners) else 1
         if state.orphans[0] > MOST_ORPHANS:
             return None
-        return self._completed(state)
+        return self._completed(state, clock)
 
-    def extended(self, xs: Indices, ys: Indices) -> Maps:
-        """Some pairs, completed to two maps: other points get the partner that agrees best with the pairs."""
+    def extended(self, xs: Indices, ys: Indices, clock: Clock) -> Maps | None:
+        """Some pairs, completed to two maps: other points get the partner that agrees best with the pairs.
+
+        None if the time is over before.
+        """
         n, m = len(self.X), len(self.Y)
         partners = np.full(n + m, dive_kernels.LEFT_OVER)
         partners[xs], partners[n + ys] = ys, xs
-        return self._completed(self._state(partners, np.empty(0, np.int64)))
+        return self._completed(self._state(partners, np.empty(0, np.int64)), clock)
 
     def _state(self, partners: Indices, first: Indices) -> dive_kernels.Dive:
         return dive_kernels.Dive(
@@ -114,10 +126,24 @@ class Work:
             np.zeros(1, np.int64),
         )  # fmt: skip
 
-    def _completed(self, state: dive_kernels.Dive) -> Maps:
-        maps = Maps(np.empty(len(self.X), np.int64), np.empty(len(self.Y), np.int64))
-        dive_kernels.complete(state, maps.f, maps.g)
-        return maps
+    def _completed(self, state: dive_kernels.Dive, clock: Clock) -> Maps | None:
+        n, most = len(self.X), len(state.partners)
+        xs, ys = np.empty(most, np.int64), np.empty(most, np.int64)
+        n_pairs = dive_kernels.pairs_made(state, xs, ys)
+        partners = state.partners.astype(np.int64)
+        for part in self._parts(np.flatnonzero(partners < 0), n_pairs, clock):
+            found = np.empty(len(part), np.int64)
+            dive_kernels.complete(part, self.X, self.Y, xs[:n_pairs], ys[:n_pairs], found)
+            partners[part] = found
+        return Maps(partners[:n], partners[n:]) if (partners >= 0).all() else None
+
+    def _parts(self, places: Indices, n_pairs: int, clock: Clock) -> Iterator[Indices]:
+        """Parts of the places, to be held against so many pairs, until the time is over."""
+        step = max(2, EXAMINED // (self._lists.shape[1] * n_pairs + 1))
+        for start in range(0, len(places), step):
+            if clock.over:
+                return
+            yield places[start : start + step]
 
 
 def farthest_points(D: Floats, k: int) -> Indices:

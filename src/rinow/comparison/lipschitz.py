@@ -110,7 +110,7 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0) -> Lipschitz
         return LipschitzDistance(math.inf, math.inf, True, np.empty(0, np.intp), "size")
     interval = _first_interval(DX, DY)
     if not interval.closed and not clock.over:
-        engine = Engine(DX, DY, BIJECTION)
+        engine = Engine(DX, DY, BIJECTION, clock=clock)
         interval.raise_lower(engine.row_bound, "sorted distances")
         interval.raise_lower(matching_bound(engine.row_levels), "matching")
         steps.close(engine, interval, clock)

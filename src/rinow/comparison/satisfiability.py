@@ -84,7 +84,7 @@ class Satisfiability:
                 wrong |= (x[s + 1 :] == x[s]) | ((y[s + 1 :] == y[s]) if kind == BIJECTION else False)
             others = np.flatnonzero(wrong) + s + 2
             self._clauses += len(others)
-            if self._clauses > LARGEST_CLAUSES or (s % 64 == 0 and clock.over):
+            if self._clauses > LARGEST_CLAUSES or (s % 8 == 0 and clock.over):
                 self.ready = False
                 return
             self._add([-(s + 1), -int(o)] for o in others)

@@ -24,6 +24,9 @@ Symmetries = tuple[Isometries, Isometries]
 STARTS, MOVES = 12, 40
 """Tabu searches before the exact one, and moves of each for every point."""
 
+SYMMETRY = 0.1
+"""Share of the time for finding isometries of both spaces."""
+
 BISECTION = 2e-3
 """The bound of arc consistency is found to this share of itself."""
 
@@ -33,7 +36,8 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
     warm_start(engine, interval, clock.part(0.15 * clock.left))
     if interval.closed:
         return
-    symmetries = isometries(engine.DX), isometries(engine.DY)
+    listing = clock.part(SYMMETRY * clock.left)
+    symmetries = isometries(engine.DX, listing), isometries(engine.DY, listing)
     if engine.kind == BIJECTION:
         symmetries = symmetries[0].exact(), symmetries[1].exact()
     homogeneous = not (symmetries[0].trivial and symmetries[1].trivial)
@@ -105,7 +109,7 @@ def branch_and_bound(
         return None
     if not engine.fits(possible):
         return possible
-    search = Search(engine, possible, level, (symmetries[0].images, symmetries[1].images))
+    search = Search(engine, possible, level, clock, (symmetries[0].images, symmetries[1].images))
     while not interval.closed:
         exhausted, pairs = search.run(clock)
         if exhausted:
@@ -117,7 +121,7 @@ def branch_and_bound(
         interval.offer(pairs, engine.worst_of(pairs))
         polish(engine, interval, clock)
         level = interval.wanted
-        search.lower_level(level)
+        search.lower_level(level, clock)
     return search.possible()
 
 

@@ -87,7 +87,7 @@ class SubsetBound:
             return True
         if self._symmetries is None:
             trivial = Isometries(np.arange(len(engine.DX))[None], 0.0)
-            self._symmetries = trivial, isometries(engine.DY)
+            self._symmetries = trivial, isometries(engine.DY, clock)
         with Satisfiability(engine, left, level, clock, self._symmetries) as solver:
             refuted, pairs = solver.run(clock)
             if refuted:

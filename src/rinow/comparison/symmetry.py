@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.comparison.clock import Clock
+
 __all__ = ["Isometries", "isometries"]
 
 Floats = NDArray[np.float64]
@@ -44,15 +46,18 @@ class Isometries(NamedTuple):
         return np.array(chosen, np.intp)
 
 
-def isometries(D: Floats) -> Isometries:
-    """Isometries of a space, up to rounding, by backtracking over the points in farthest-point order."""
+def isometries(D: Floats, clock: Clock) -> Isometries:
+    """Isometries of a space, up to rounding, by backtracking over the points in farthest-point order.
+
+    Those found when the time is over: any subset of the group may be used.
+    """
     n = len(D)
     tolerance = TOLERANCE * float(D.max())
     profile = np.sort(D, axis=1)
     order = _farthest_point_order(D)
     found = [np.arange(n)]
     if n > 1:
-        _extend(D, profile, order, tolerance, found)
+        _extend(D, profile, order, tolerance, found, clock)
     images = np.array(found, np.intp)
     error = max(float(np.abs(D[np.ix_(f, f)] - D).max()) for f in images)
     return Isometries(images, error)
@@ -70,12 +75,12 @@ def _farthest_point_order(D: Floats) -> Indices:
     return np.array(order, np.intp)
 
 
-def _extend(D: Floats, profile: Floats, order: Indices, tolerance: float, found: list[Indices]) -> None:
+def _extend(D: Floats, profile: Floats, order: Indices, tolerance: float, found: list[Indices], clock: Clock) -> None:
     """Depth-first search for the images of the points in order; complete ones are appended to `found`."""
     n, effort = len(D), 0
     image = np.empty(n, np.intp)
     stack = [(0, y) for y in _images(D, profile, order, image, 0, tolerance)[::-1]]
-    while stack and len(found) < LARGEST_NUMBER and effort < LARGEST_EFFORT:
+    while stack and len(found) < LARGEST_NUMBER and effort < LARGEST_EFFORT and not clock.over:
         k, y = stack.pop()
         effort += 1
         image[k] = y

@@ -40,28 +40,38 @@ class Dive(NamedTuple):
 
 
 @kernel
-def begin(dive, possible, xs, ys, t):
-    """Fill the lists of the undecided points with partners that are possible and agree with the given pairs."""
+def _list_partners_of(v, X, Y, possible, xs, ys, t, out):
+    """Write the partners of place v that are possible and agree with the given pairs; their number."""
     n, m = possible.shape
+    k = 0
+    for w in range(m if v < n else n):
+        x, y = (v, w) if v < n else (w, v - n)
+        if possible[x, y] and _agrees(X[x], Y[y], xs, ys, t):
+            out[k] = w
+            k += 1
+    return k
+
+
+@parallel_kernel
+def list_partners(places, X, Y, possible, xs, ys, t, lists, counts):
+    """Fill the lists of the given places."""
+    for i in prange(places.shape[0]):
+        v = places[i]
+        counts[v] = _list_partners_of(v, X, Y, possible, xs, ys, t, lists[v])
+
+
+@kernel
+def begin(dive):
+    """Leave over the undecided points with an empty list."""
     dive.orphans[0] = 0
-    for v in range(n + m):
-        if dive.partners[v] != UNDECIDED:
-            continue
-        k = 0
-        for w in range(m if v < n else n):
-            x, y = (v, w) if v < n else (w, v - n)
-            if possible[x, y] and _agrees(dive, x, y, xs, ys, t):
-                dive.lists[v, k] = w
-                k += 1
-        dive.counts[v] = k
-        if k == 0:
+    for v in range(dive.partners.shape[0]):
+        if dive.partners[v] == UNDECIDED and dive.counts[v] == 0:
             _leave_over(dive, v)
 
 
 @kernel
-def _agrees(dive, x, y, xs, ys, t):
-    """Whether the pair (x, y) agrees with all given ones."""
-    row_x, row_y = dive.X[x], dive.Y[y]
+def _agrees(row_x, row_y, xs, ys, t):
+    """Whether the pair of points with these distances agrees with all given ones."""
     for p in range(xs.shape[0]):
         if abs(row_x[xs[p]] - row_y[ys[p]]) > t:
             return False
@@ -185,24 +195,26 @@ def best_partner(row, other, own_places, other_places, n_pairs):
 
 
 @kernel
-def complete(dive, f, g):
-    """Write the partners to f and g; those left over get the partner with the least worst discrepancy."""
-    n, m = f.shape[0], g.shape[0]
-    xs, ys, n_pairs = np.empty(n + m, np.int64), np.empty(n + m, np.int64), 0
-    for v in range(n + m):
+def pairs_made(dive, xs, ys):
+    """Write the pairs of the points that have a partner; their number."""
+    n, n_pairs = dive.X.shape[0], 0
+    for v in range(dive.partners.shape[0]):
         if dive.partners[v] >= 0:
             xs[n_pairs], ys[n_pairs] = (v, dive.partners[v]) if v < n else (dive.partners[v], v - n)
             n_pairs += 1
-    for v in range(n + m):
-        partner = dive.partners[v]
-        if partner < 0 and v < n:
-            partner = best_partner(dive.X[v], dive.Y, xs, ys, n_pairs)
-        elif partner < 0:
-            partner = best_partner(dive.Y[v - n], dive.X, ys, xs, n_pairs)
+    return n_pairs
+
+
+@parallel_kernel
+def complete(places, X, Y, xs, ys, out):
+    """Write for each listed place the partner with the least worst discrepancy to the given pairs."""
+    n = X.shape[0]
+    for i in prange(places.shape[0]):
+        v = places[i]
         if v < n:
-            f[v] = partner
+            out[i] = best_partner(X[v], Y, xs, ys, xs.shape[0])
         else:
-            g[v - n] = partner
+            out[i] = best_partner(Y[v - n], X, ys, xs, xs.shape[0])
 
 
 @kernel
