@@ -8,7 +8,7 @@ import numpy as np
 
 from rinow.curvature.estimate import Estimate, Floats
 from rinow.curvature.intrinsic import intrinsic_curvature
-from rinow.curvature.sectional import CALIBRATION, sectional
+from rinow.curvature.sectional import QUALITIES, sectional
 from rinow.curvature.unresolved import with_detail
 from rinow.kernels import curves, monge
 from rinow.mesh import TriangleMesh
@@ -57,7 +57,8 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
         estimate = with_detail(mesh, estimate)
     if quality != "best" or options.get("radius") is not None or estimate.noise is None or estimate.spacing is None:
         return estimate
-    risk = np.square(estimate.spread / CALIBRATION)
+    calibration = QUALITIES[quality].calibration
+    risk = np.square(estimate.spread / calibration)
     chords = estimate.gaussian**2 * np.square(_chord_errors(mesh, estimate))
     hopeful = (chords < risk) & (estimate.noise < QUIET * estimate.spacing) & ~mesh.topology.vertex_is_boundary
     if np.count_nonzero(hopeful) < WORTH * mesh.n_vertices:
@@ -70,7 +71,7 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     own = 1.0 / risk
     share = np.divide(weight, weight + own, out=np.zeros_like(weight), where=weight > 0.0)
     step = np.where(share > 0.0, share * (found.gaussian - estimate.gaussian), 0.0)
-    spread = CALIBRATION * np.sqrt(np.where(share > 0.5, other, risk))
+    spread = calibration * np.sqrt(np.where(share > 0.5, other, risk))
     return estimate.with_gaussian(estimate.gaussian + step, spread)
 
 
