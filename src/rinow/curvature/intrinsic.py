@@ -220,7 +220,8 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
     -------
     estimate : Estimate
         `gaussian` everywhere but at vertices that are not manifold or far from any interior vertex; at the boundary
-        from the interior nearby.  `spread` is 1.6 times the root of the predicted squared error, and no less than the error of chords.
+        from the interior nearby.  `spread` is 1.6 times the root of the predicted squared error, and no
+        less than the error of chords.
 
     Notes
     -----

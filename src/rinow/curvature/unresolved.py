@@ -25,8 +25,8 @@ PASSES = 10
 LARGEST = 3.0
 """Residuals are cut at this multiple of their median modulus, lest a few bad stars decide."""
 STEPS = 8
-"""What a whole mesh or component says is rounded to so many parts, or parts of an octave: a local change of the mesh then
-leaves it as it is, unless it lies at a border."""
+"""What a whole mesh or component says is rounded to so many parts, or parts of an octave: a local change of the mesh
+then leaves it as it is, unless it lies at a border."""
 
 
 def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
