@@ -63,7 +63,7 @@ def test_spread_is_calibrated_on_noisy_meshes(surface, quality):
     c = surface_curvature((noisy.vertices, noisy.faces), quality=quality)
     inner = c.status == 0
     share = np.mean((np.abs(c.gaussian - shape.gaussian) < 2 * c.spread)[inner])
-    assert 0.85 < share <= 1
+    assert 0.9 < share <= 1
 
 
 @pytest.mark.parametrize("method", ("wald", "angle_defect"))

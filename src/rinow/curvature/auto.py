@@ -8,7 +8,7 @@ import numpy as np
 
 from rinow.curvature.estimate import Estimate, Floats
 from rinow.curvature.intrinsic import intrinsic_curvature
-from rinow.curvature.sectional import CALIBRATION, sectional
+from rinow.curvature.sectional import QUALITIES, sectional
 from rinow.curvature.unresolved import with_detail
 from rinow.kernels import curves, monge
 from rinow.mesh import TriangleMesh
@@ -68,7 +68,8 @@ def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> 
     k1, k2, noise, spacing = estimate.k1, estimate.k2, estimate.noise, estimate.spacing
     if k1 is None or k2 is None or noise is None or spacing is None:
         return estimate
-    risk = np.square(estimate.spread / CALIBRATION)
+    calibration = QUALITIES[quality].calibration
+    risk = np.square(estimate.spread / calibration)
     chords = estimate.gaussian**2 * np.square(_chord_errors(mesh, estimate))
     largest = np.fmax(np.fmax(np.abs(k1), np.abs(k2)), FLAT / spacing)
     hopeful = (risk > np.fmax(chords, (RESOLVED * largest**2) ** 2)) & (noise < QUIET * spacing)
@@ -81,7 +82,7 @@ def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> 
     hopeful &= np.isfinite(other) & np.isfinite(found.gaussian)
     share = np.divide(risk, risk + other, out=np.zeros_like(risk), where=hopeful & (risk > 0.0))
     step = np.where(share > 0.0, share * (found.gaussian - estimate.gaussian), 0.0)
-    spread = CALIBRATION * np.sqrt(np.where(share > 0.5, other, risk))
+    spread = calibration * np.sqrt(np.where(share > 0.5, other, risk))
     return estimate.with_gaussian(estimate.gaussian + step, spread)
 
 

@@ -15,7 +15,7 @@ Bools = NDArray[np.bool_]
 
 LEAST_ANGLE, LEAST_NOISE = np.radians(7.6), 6.0
 """Turning of an edge that can be certain, alone and in standard deviations.  On a smooth mesh noise makes none such."""
-LEAST_EDGES = 8
+LEAST_EDGES = 10
 """Edges of a certain line, and certain ones of a mesh that is worth a closer look."""
 CERTAIN = 8.0
 """Median jump over its standard error of a certain line."""
@@ -34,7 +34,7 @@ def crease_barriers(mesh: TriangleMesh) -> Bools:
     Returns
     -------
     is_crease : (n_edges,) ndarray of bool
-        Those lines of `singular_features` of eight edges or more whose median jump is eight standard errors, without
+        Those lines of `singular_features` of ten edges or more whose median jump is eight standard errors, without
         the facets of coarse rounds.  Noise of a tenth of the edge length makes no such line on a smooth surface.
     """
     turnings = EdgeTurnings(mesh)

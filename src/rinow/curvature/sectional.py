@@ -21,7 +21,7 @@ from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencil
 from rinow.mesh import TriangleMesh
 from rinow.topology import Topology
 
-__all__ = ["CALIBRATION", "EDGE_RINGS", "QUALITIES", "blended_patches", "rings_around", "sectional", "shrinkage"]
+__all__ = ["EDGE_RINGS", "QUALITIES", "blended_patches", "rings_around", "sectional", "shrinkage"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -34,8 +34,8 @@ PASSES = 2
 FLAT_DEFECT = 1e-10
 """Angle defects below this, in radians, are rounding: a neighbourhood of such vertices is isometric to the plane."""
 FLAT_RINGS = 3
-CALIBRATION = 1.25
-"""Standard error over the root of the least risk: the noise is the least of many estimates, the fit the best."""
+EDGE_CALIBRATION = 1.4
+"""Standard error at a boundary over that inside: biases are averaged over places that have points on all sides."""
 EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 4, 6
 """Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, worse placed."""
 AROUND = 2.2
@@ -46,16 +46,19 @@ class Quality(NamedTuple):
     """How densely patches lie.
 
     A patch covers `share` times the least radius near it, at least `least` spacings.  With `selects` each chooses its
-    order and radius, else the samples near it do.  Patches are weighted by their risk to the power `-power`.
+    order and radius, else the samples near it do.  Patches are weighted by their risk to the power `-power`.  The
+    standard error is `calibration` times the root of the least risk: the noise is the least of many estimates, the fit
+    the one that looks best, and where samples choose, its bias is that of other places.
     """
 
     share: float
     least: float
     selects: bool
     power: float
+    calibration: float
 
 
-QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5), "fast": Quality(0.3, 1.2, False, 1.0)}
+QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5, 1.5), "fast": Quality(0.3, 1.2, False, 1.0, 2.0)}
 
 
 def sectional(
@@ -124,7 +127,9 @@ def sectional(
     gaussian, mean, risk, reach = (_spread_out(out[:, i], index, mesh.n_vertices) for i in range(4))
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
     noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
-    spread, half = CALIBRATION * np.sqrt(risk), np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
+    half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
+    spread = QUALITIES[quality].calibration * np.sqrt(risk)
+    spread[mesh.topology.vertex_is_boundary] *= EDGE_CALIBRATION
     estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
     estimate.put(on_edge, ends)
     if radius is None:

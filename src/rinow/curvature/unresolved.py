@@ -24,6 +24,9 @@ PASSES = 10
 """Averages over rings of neighbours: some hundred vertices decide together, if their component as a whole agrees."""
 LARGEST = 3.0
 """Residuals are cut at this multiple of their median modulus, lest a few bad stars decide."""
+STEPS = 8
+"""What a whole mesh or component says is rounded to so many parts, or parts of an octave: a local change of the mesh
+then leaves it as it is, unless it lies at a border."""
 
 
 def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
@@ -53,13 +56,14 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
 def _detail_share(mesh: TriangleMesh, residual: Floats) -> Floats:
     """(n_vertices,): 0 where the residual is like noise, 1 where neighbours have it in common."""
     known = np.isfinite(residual) & ~mesh.topology.vertex_is_boundary
-    largest = LARGEST * float(np.median(np.abs(residual[known]))) if known.any() else 0.0
+    middle = float(np.median(np.abs(residual[known]))) if known.any() else 0.0
+    largest = LARGEST * 2.0 ** (np.round(STEPS * np.log2(middle)) / STEPS) if middle > 0.0 else 0.0
     r = np.where(known, np.clip(residual, -largest, largest), 0.0)
     product, square = r * _ring_means(mesh, r, 1, itself=False), r * r
     near = _share_of(_ring_means(mesh, product, PASSES), _ring_means(mesh, square, PASSES))
     component = mesh.topology.components + 1
     whole = _share_of(*(np.bincount(component, x).astype(np.float64) for x in (product, square)))
-    return np.minimum(near, whole[component])
+    return np.minimum(near, np.round(STEPS * whole[component]) / STEPS)
 
 
 def _share_of(covariance: Floats, variance: Floats) -> Floats:
