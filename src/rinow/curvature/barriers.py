@@ -15,10 +15,10 @@ Bools = NDArray[np.bool_]
 
 LEAST_ANGLE, LEAST_NOISE = np.radians(7.6), 6.0
 """Turning of an edge that can be certain, alone and in standard deviations.  On a smooth mesh noise makes none such."""
-LEAST_EDGES = 10
-"""Edges of a certain line, and certain ones of a mesh that is worth a closer look."""
-CERTAIN = 8.0
-"""Median jump over its standard error of a certain line."""
+LEAST_EDGES = 8
+"""Certain edges of a mesh that is worth a closer look."""
+CERTAIN = ((10, 8.0), (8, 16.0))
+"""Edges of a certain line, and its median jump over the standard error: shorter ones must be clearer."""
 ROUND = np.radians(44.0)
 """Jump up to which lines that only bound single strips of faces may be those of a coarse round."""
 
@@ -34,8 +34,9 @@ def crease_barriers(mesh: TriangleMesh) -> Bools:
     Returns
     -------
     is_crease : (n_edges,) ndarray of bool
-        Those lines of `singular_features` of ten edges or more whose median jump is eight standard errors, without
-        the facets of coarse rounds.  Noise of a tenth of the edge length makes no such line on a smooth surface.
+        Those lines of `singular_features` of ten edges or more whose median jump is eight standard errors, or of eight
+        edges with sixteen, without the facets of coarse rounds.  Noise of a tenth of the edge length makes no such
+        line on a smooth surface.
     """
     turnings = EdgeTurnings(mesh)
     theta = np.abs(turnings.turnings)
@@ -50,12 +51,14 @@ def crease_barriers(mesh: TriangleMesh) -> Bools:
 
 def _certain_lines(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:
     edges, kept = mesh.topology.edges, lines.is_crease
-    with np.errstate(divide="ignore"):
-        clear = np.abs(lines.angles) >= CERTAIN * lines.errors
-    clear &= ~_bounds_strips(mesh, turnings, lines)
+    told = kept & ~_bounds_strips(mesh, turnings, lines)
     labels = crease_lines.line_components(kept, edges, mesh.n_vertices)
-    sizes, counts = (np.bincount(labels[x], minlength=mesh.n_vertices) for x in (kept, kept & clear))
-    return kept & (sizes[labels] >= LEAST_EDGES) & (2 * counts[labels] > sizes[labels])
+    sizes = np.bincount(labels[kept], minlength=mesh.n_vertices)
+    certain = np.zeros(mesh.n_vertices, np.bool_)
+    for least, ratio in CERTAIN:
+        clear = told & (np.abs(lines.angles) >= ratio * lines.errors)
+        certain |= (sizes >= least) & (2 * np.bincount(labels[clear], minlength=mesh.n_vertices) > sizes)
+    return kept & certain[labels]
 
 
 def _bounds_strips(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:
