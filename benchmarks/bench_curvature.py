@@ -2,6 +2,7 @@
 
     python benchmarks/bench_curvature.py                # everything: docs/reference/benchmark.md and its pictures
     python benchmarks/bench_curvature.py --only rinow VTK --sizes 1000 4000
+    python benchmarks/bench_curvature.py --growth       # speed and memory from 16,000 to 1,000,000 vertices
 
 Every estimator sees the same meshes with the settings of its name and runs in a process of its own.  The error is the
 relative root mean square over the vertices off the border, weighted by area; the tables have geometric means over the
@@ -24,6 +25,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent / "curvature"))
 from estimators import ESTIMATORS, third_areas, version
+from growth import CASES, PEER, SIZES, show_growth
 from report import write_report
 from surfaces import STYLES, Mesh, has, surfaces, triangulation
 
@@ -135,7 +137,12 @@ def main() -> None:
     parser.add_argument("--speed-sizes", nargs="*", type=int, default=[64000])
     parser.add_argument("--docs", type=Path, default=DOCS, help="folder to write reference/benchmark.md and images/ to")
     parser.add_argument("--from-json", type=Path, help="write the report of an earlier run again")
+    parser.add_argument("--growth", nargs="*", type=int, help="only the table of speed and memory, for these sizes")
+    parser.add_argument("--noise", type=float, default=0.0, help="noise of the meshes of --growth, over the mean edge")
     arguments = parser.parse_args()
+    if arguments.growth is not None:
+        show_growth(arguments.growth or list(SIZES), arguments.noise, arguments.only or [*CASES, PEER])
+        return
     kept = HERE / "curvature" / "results.json"
     if arguments.from_json:
         results = json.loads(arguments.from_json.read_text())

@@ -175,8 +175,8 @@ def select(
     rows = np.zeros(len(centres) + 1, np.int64)
     np.cumsum(high - low + 1, out=rows[1:])
     fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise)
-    tables = fill_tables(fitting, True, tasks, 0.4)
-    return _least(ladder, spacing, 4, tables, rows, low, high, links, passes, np.empty((0, 0, 0)))
+    place, no_logs = (rows, low, high, links, passes), np.empty((0, 0, 0))
+    return _least(ladder, spacing, 4, fill_tables(fitting, True, tasks, 0.4), *place, no_logs)
 
 
 def _least(
@@ -185,8 +185,11 @@ def _least(
 ) -> Choice:  # fmt: skip
     """The choice of least risk, which is in units of length; its logarithms in those of the spacings."""
     place = (spacing, power, rows, low, high, links)
-    bias, bias_variance, jump = (_averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance, tables.jump))
-    variance = _averaged(tables.variance, *place, 1)
+    jump = _averaged(tables.jump, *place, passes)
+    tables = tables._replace(jump=jump)  # what is averaged is needed no more, and its memory is, on large meshes
+    bias_variance = _averaged(tables.bias_variance, *place, passes)
+    tables = tables._replace(bias_variance=bias_variance)
+    bias, variance = _averaged(tables.bias, *place, passes), _averaged(tables.variance, *place, 1)
     choice = _empty_choice(len(spacing))
     averages = (variance, bias, bias_variance, jump)
     risks.least_risks(rows, low, high, ladder.reaches, tables, *averages, RESOLVED**power, *choice, logs)

@@ -1,9 +1,41 @@
-"""One compilation policy for all kernels."""
+"""One compilation policy for all kernels.
+
+A scalar kernel that only kernels call is `inner`: the code that makes Python objects numbers and arrays is left out,
+which for named tuples of many arrays takes longer to compile than the kernel itself.  A driver is a `parallel_kernel`.
+"""
 
 import numba
 from numba import prange
 
-__all__ = ["kernel", "parallel_kernel", "prange"]
+from rinow.kernels._parallel import Parallel
 
-kernel = numba.njit(cache=True, error_model="numpy")
-parallel_kernel = numba.njit(cache=True, error_model="numpy", parallel=True)
+__all__ = ["inner", "kernel", "parallel_kernel", "prange"]
+
+POLICY = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+
+kernel = numba.njit(**POLICY)
+
+
+def inner(function):
+    """Compile a kernel for kernels; Python can call it too, but compiles a caller for it first."""
+    compiled = numba.njit(**POLICY, no_cpython_wrapper=True)(function)
+    if numba.config.DISABLE_JIT:
+        return compiled
+
+    caller = []
+
+    def from_python(*args, **kwargs):
+        """What numba shall call from Python for arguments of these types: a kernel that calls the kernel."""
+        if not caller:
+            caller.append(numba.njit(lambda *given: compiled(*given)))
+        return caller[0]
+
+    # There is no entry for Python: neither look for one nor add one.
+    compiled._insert = lambda *entry, **options: None
+    compiled._compile_for_args = from_python
+    return compiled
+
+
+def parallel_kernel(function):
+    """Compile a loop over `prange`, the last statement of a function without a result, for all threads."""
+    return function if numba.config.DISABLE_JIT else Parallel(function, POLICY)

@@ -5,7 +5,7 @@ Corner c = 3 f + k is corner k of face f.  The same number names the half-edge f
 
 import numpy as np
 
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
 
 BOUNDARY = -1
 """Partner of a half-edge whose edge has one face."""
@@ -17,13 +17,13 @@ MANY_CORNERS = 48
 """Above this number of corners at a vertex, sorting them is faster than comparing all pairs."""
 
 
-@kernel
+@inner
 def next_corner(c):
     """The corner after c in its face."""
     return c + 1 if c % 3 < 2 else c - 2
 
 
-@kernel
+@inner
 def previous_corner(c):
     """The corner before c in its face."""
     return c - 1 if c % 3 > 0 else c + 2
@@ -69,7 +69,7 @@ def edges_of_halfedges(offsets, corners, after, before, partners, first):
             join_few(v, corners[start:stop], after[start:stop], before[start:stop], partners, first)
 
 
-@kernel
+@inner
 def join_few(v, corners, after, before, partners, first):
     """Join the half-edges between v and each greater vertex w by looking through all corners at v."""
     for i in range(2 * corners.shape[0]):
@@ -87,10 +87,10 @@ def join_few(v, corners, after, before, partners, first):
         partners[h], first[h] = (partner if count <= 2 else NONMANIFOLD), least
 
 
-@kernel
+@inner
 def join_sorted(v, corners, after, before, partners, first):
     """The same for a vertex with many corners, in the order of the other vertex."""
-    order = np.argsort(np.concatenate((after, before)), kind="mergesort")
+    order = ends_in_order(after, before) % (2 * corners.shape[0])
     i = 0
     while i < order.shape[0]:
         w, h = end_of(order[i], corners, after, before)
@@ -107,14 +107,24 @@ def join_sorted(v, corners, after, before, partners, first):
         i = stop
 
 
-@kernel
+@inner
+def ends_in_order(after, before):
+    """The numbers w 2n + i of the i-th half-edges to vertices w, in ascending order."""
+    n = after.shape[0]
+    keys = np.empty(2 * n, np.int64)
+    for i in range(n):
+        keys[i], keys[n + i] = after[i] * 2 * n + i, before[i] * 2 * n + n + i
+    return np.sort(keys)
+
+
+@inner
 def end_of(i, corners, after, before):
     """Other vertex and number of the i-th half-edge at a vertex: first those that leave it, then those that arrive."""
     n = corners.shape[0]
     return (after[i], corners[i]) if i < n else (before[i - n], previous_corner(corners[i - n]))
 
 
-@kernel
+@inner
 def corner_across(c, side, v, faces, partners):
     """The corner at vertex v in the face across the edge after (side 0) or before (side 1) corner c, or -1."""
     h = c if side == 0 else previous_corner(c)
@@ -124,7 +134,7 @@ def corner_across(c, side, v, faces, partners):
     return g if faces[g // 3, g % 3] == v else next_corner(g)
 
 
-@kernel
+@inner
 def fan_size(v, faces, offsets, corners, partners):
     """Number of corners at v that are joined to its first one by edges with exactly two faces."""
     start = corners[offsets[v]]
@@ -187,7 +197,7 @@ def vertex_components(faces, face_used, n_vertices):
     return labels, count
 
 
-@kernel
+@inner
 def _root(parent, v):
     """Representative of v, halving the path to it."""
     while parent[v] != v:
@@ -234,13 +244,13 @@ def face_orientations(faces, face_used, partners):
     return flip, consistent
 
 
-@kernel
+@inner
 def distinct_neighbours(after, before, out):
     """Number of different vertices in a row of corners; with room in `out` they are written there."""
     n = after.shape[0]
     count = 0
     if n > MANY_CORNERS:
-        ends = np.sort(np.concatenate((after, before)))
+        ends = ends_in_order(after, before) // (2 * n)
         for i in range(2 * n):
             if i == 0 or ends[i] != ends[i - 1]:
                 if out.shape[0] > 0:

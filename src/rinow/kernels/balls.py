@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import monge
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels._jit import inner, parallel_kernel, prange
 from rinow.kernels.osculating_torus import LARGEST_TURN, torus_coordinates
 
 HUB = 100
@@ -43,7 +43,7 @@ class Ball(NamedTuple):
     points: np.ndarray
 
 
-@kernel
+@inner
 def ball(n_vertices, most):
     """Work space for a surface with n vertices and balls of at most so many points."""
     return Ball(
@@ -55,7 +55,7 @@ def ball(n_vertices, most):
     )
 
 
-@kernel
+@inner
 def gather(members, first, last, spacing, reach, epoch, sheet, work):
     """Write the unseen neighbours of some members, not farther than `reach`, to the candidates; how many."""
     vertices, normals = sheet.vertices, sheet.normals
@@ -82,7 +82,7 @@ def gather(members, first, last, spacing, reach, epoch, sheet, work):
     return count
 
 
-@kernel
+@inner
 def judge(count, frame, spacing, is_oriented, work):
     """Replace the candidates' positions by torus coordinates; the squared distance, or inf for another sheet."""
     raw = work.raw
@@ -104,7 +104,7 @@ def judge(count, frame, spacing, is_oriented, work):
         raw[0, i], raw[1, i], raw[2, i], raw[3, i] = u, v, w, (rho2 + w * w if inside else np.inf)
 
 
-@kernel
+@inner
 def grow(v, frame, reach, epoch, sheet, work):
     """Write the members of the ball of `reach` spacings about v and their coordinates in spacings; how many.
 

@@ -5,13 +5,13 @@ import math
 import numpy as np
 
 from rinow.kernels import stencils
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
 
 QUANTA = 2.0**26
 """Steps in a shape ratio of 1: far above rounding, so that motions change no key, and below chance coincidence."""
 
 
-@kernel
+@inner
 def mixed(x):
     """A hash of a 64-bit number (the finaliser of splitmix64)."""
     x = np.uint64(x)
@@ -33,7 +33,7 @@ def shape_keys(vertices, offsets, neighbours, out):
         out[v] = np.uint32(mixed(np.uint64(ratio * QUANTA + 0.37)) >> np.uint64(32))
 
 
-@kernel
+@inner
 def disc(v, radius, epoch, sheet, marks, members):
     """Write the vertices within a distance of v, reached over such vertices; how many."""
     vertices, offsets, neighbours, is_barrier = sheet.vertices, sheet.offsets, sheet.neighbours, sheet.is_barrier

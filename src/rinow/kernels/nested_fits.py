@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rinow.kernels._jit import kernel
+from rinow.kernels._jit import inner
 
 MAX_ORDER = 8
 N_ORDERS = MAX_ORDER - 1
@@ -37,7 +37,7 @@ class Fits(NamedTuple):
     residuals: np.ndarray
 
 
-@kernel
+@inner
 def fits(n_shells):
     """Work space for at most n shells."""
     p = TERMS[MAX_ORDER]
@@ -54,7 +54,7 @@ def fits(n_shells):
     )
 
 
-@kernel
+@inner
 def add_moments(points, n, reaches, order, work):
     """Sums of u^a v^b over the points of each ball to moments[ball, b, a], of w u^a v^b to offsets[ball, b, a]."""
     n_shells, top = len(reaches), 2 * order + 1
@@ -97,7 +97,7 @@ def add_moments(points, n, reaches, order, work):
                 offsets[shell, b, a] += offsets[shell - 1, b, a]
 
 
-@kernel
+@inner
 def highest_order(count, order):
     """The highest order not above the given one that `count` points admit; 1 for none."""
     while order > 1 and (count < TERMS[order] + SPARE or (order > 2 and count < SURPLUS * TERMS[order])):
@@ -105,7 +105,7 @@ def highest_order(count, order):
     return order
 
 
-@kernel
+@inner
 def fill(shell, reach, order, work):
     """Write the normal equations in coordinates over `reach`; columns after the monomials: units 0..5 and the data."""
     p = TERMS[order]
@@ -125,7 +125,7 @@ def fill(shell, reach, order, work):
         work.diagonal[i] = factor[i, i]
 
 
-@kernel
+@inner
 def fit_orders(shell, reach, order, work):
     """Fit all orders up to `order`; return the highest complete one.
 
@@ -168,7 +168,7 @@ def fit_orders(shell, reach, order, work):
     return order
 
 
-@kernel
+@inner
 def coefficients(order, top, work, out):
     """Write the coefficients, in coordinates over the reach, of an order of the factorisation made for `top`."""
     p, n, factor = TERMS[top], TERMS[order], work.factor

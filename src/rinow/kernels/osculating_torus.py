@@ -9,13 +9,13 @@ circle is w = 0.
 
 import math
 
-from rinow.kernels._jit import kernel
+from rinow.kernels._jit import inner
 
 LARGEST_TURN = math.cos(1.9)
 """Cosine of the largest angle of either arc."""
 
 
-@kernel
+@inner
 def arc(x, a, k):
     """Length of the arc of curvature k whose angle has the sine k x / m and the cosine a / m, m^2 = (k x)^2 + a^2.
 
@@ -35,7 +35,7 @@ def arc(x, a, k):
     return 8.0 * t * p
 
 
-@kernel
+@inner
 def torus_coordinates(x, y, z, k1, k2):
     """(u1, u2, w) of the point x d1 + y d2 + z n, and cosines and sines of the two angles."""
     a = 1.0 - k1 * z
@@ -47,7 +47,7 @@ def torus_coordinates(x, y, z, k1, k2):
     return arc(x, a, k1), arc(y, b, k2), w, a / m, k1 * x / m, b / l, k2 * y / l
 
 
-@kernel
+@inner
 def offset_forms(u2, k1, k2, f, f1, f2, f11, f12, f22):
     """First and second fundamental form of w = f(u1, u2): g11, g12, g22, L, M, N, and the volume sqrt(det g).
 
@@ -69,7 +69,7 @@ def offset_forms(u2, k1, k2, f, f1, f2, f11, f12, f22):
     return g11, g12, g22, l / volume, m / volume, n / volume, volume
 
 
-@kernel
+@inner
 def torus_frame(cos1, sin1, cos2, sin2):
     """Components in (d1, d2, n) of the two arc directions and the normal of the torus."""
     return (cos1, 0.0, sin1), (-sin1 * sin2, cos2, cos1 * sin2), (-sin1 * cos2, -sin2, cos1 * cos2)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import balls, nested_fits, patch_fits, patches
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels._jit import inner, parallel_kernel, prange
 from rinow.kernels.nested_fits import MAX_ORDER, TERMS
 
 TABLES, FRAMES, VALUES = 0, 1, 2
@@ -49,14 +49,15 @@ class Work(NamedTuple):
     coefficients: np.ndarray
 
 
-@kernel
+@inner
 def treat(i, task, is_mean, reaches, centres, sheet, tables, frames, out, work, values, gradients):
     """Grow the balls about one centre, fit, and write what the task asks for."""
     ball, fit = work.ball, work.fit
     v, frame, order = centres.vertices[i], centres.frames[i], centres.orders[i]
     start, stop, spacing = centres.rows[i], centres.rows[i + 1], sheet.spacing[v]
     if task == FRAMES:
-        frames[i] = frame
+        for k in range(frame.shape[0]):
+            frames[i, k] = frame[k]
     if task == VALUES:
         out.vertices[start:stop] = -1
     if order < 2:
@@ -89,6 +90,6 @@ def treat_all(task, is_mean, reaches, most, n_blocks, centres, sheet, tables, fr
     for block in prange(n_blocks):
         ball, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(len(reaches))
         work = Work(ball, fit, np.empty(TERMS[MAX_ORDER]))
-        values, gradients = np.empty(MAX_ORDER + 1), [(0.0, 0.0, 0.0)] * (MAX_ORDER + 1)
+        values, gradients = np.empty(MAX_ORDER + 1), np.empty((MAX_ORDER + 1, 3))
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
             treat(i, task, is_mean, reaches, centres, sheet, tables, frames, out, work, values, gradients)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import nested_fits
-from rinow.kernels._jit import kernel
+from rinow.kernels._jit import inner
 from rinow.kernels.nested_fits import N_ORDERS
 from rinow.kernels.osculating_torus import offset_forms
 
@@ -34,13 +34,13 @@ class Tables(NamedTuple):
     noise: np.ndarray
 
 
-@kernel
+@inner
 def forms_at_centre(jet, k1, k2):
     """`offset_forms` at u = 0."""
     return offset_forms(0.0, k1, k2, jet[0], jet[1], jet[2], jet[3], jet[4], jet[5])
 
 
-@kernel
+@inner
 def curvature_and_gradients(jet, k1, k2):
     """K, H, gradients of both by (f11, f12, f22), and the factor of f11 f22 - f12^2 in K."""
     g11, g12, g22, l, m, n, volume = forms_at_centre(jet, k1, k2)
@@ -51,7 +51,7 @@ def curvature_and_gradients(jet, k1, k2):
     return gaussian, mean, (p * n, -2.0 * p * m, p * l), (q * g22, -2.0 * q * g12, q * g11), area * area / (d * d)
 
 
-@kernel
+@inner
 def quadratic_form(g, c):
     """g^T C g for the covariances C11, C12, C13, C22, C23, C33."""
     a, b, d = g
@@ -59,7 +59,7 @@ def quadratic_form(g, c):
     return max(total, 0.0)
 
 
-@kernel
+@inner
 def write_no_row(t, tables):
     """Write nan for a ball that has no points beyond the one below it."""
     tables.variance[t, :] = np.nan
@@ -72,7 +72,7 @@ def write_no_row(t, tables):
         tables.noise[t, :] = np.nan
 
 
-@kernel
+@inner
 def write_row(t, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients):
     """Write one row of the tables from the orders 2..top of one ball, for noise of variance s2."""
     known = tables.second.shape[0] == 0
@@ -81,11 +81,12 @@ def write_row(t, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients
         i = d - 2
         jet, c = fit.jets[d], fit.covariances[d]
         gaussian, mean, of_gaussian, of_mean, factor = curvature_and_gradients(jet, k1, k2)
-        values[d], gradients[d] = (mean, of_mean) if is_mean else (gaussian, of_gaussian)
+        values[d], gradient = (mean, of_mean) if is_mean else (gaussian, of_gaussian)
+        gradients[d, 0], gradients[d, 1], gradients[d, 2] = gradient
         if not jet[1] * jet[1] + jet[2] * jet[2] <= STEEP:
             values[d] = np.nan
             continue
-        linear = s2 * quadratic_form(gradients[d], c)
+        linear = s2 * quadratic_form(gradient, c)
         second = 0.0
         if not is_mean:
             second = (s2 * factor) ** 2 * (c[0] * c[5] + c[2] * c[2] + 2.0 * c[3] * c[3])
@@ -99,13 +100,14 @@ def write_row(t, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients
     for d in range(2, top - 1):
         if not math.isnan(values[d]) and not math.isnan(values[d + 2]):
             above, below = fit.covariances[d + 2], fit.covariances[d]
-            v = s2 * max(quadratic_form(gradients[d], above) - quadratic_form(gradients[d], below), 0.0)
+            gradient = (gradients[d, 0], gradients[d, 1], gradients[d, 2])
+            v = s2 * max(quadratic_form(gradient, above) - quadratic_form(gradient, below), 0.0)
             e = values[d] - values[d + 2]
             tables.bias_variance[t, d - 2] = v
             tables.bias[t, d - 2] = e * e - (v if known else 0.0)
 
 
-@kernel
+@inner
 def write_rows(t, reaches, order, is_mean, k1, k2, s2, fit, tables, values, gradients):
     """Write one row for each of some nested balls, whose moments are at hand, from row t on."""
     before, reference = 0.0, np.nan

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels._jit import inner, parallel_kernel, prange
 from rinow.kernels.nested_fits import N_ORDERS
 from rinow.kernels.patch_fits import N_BIASES
 
@@ -42,7 +42,7 @@ def average_rows(values, spacing, power, rows, low, high, links, starts, out):
                 out[rows[i] + k, c] = total / count if count else np.nan
 
 
-@kernel
+@inner
 def squared_biases(t, ratio, upper, tables, bias, bias_variance, out):
     """Write the squared bias of each order; where the order two above is missing, from the next larger ball `upper`.
 
@@ -61,7 +61,7 @@ def squared_biases(t, ratio, upper, tables, bias, bias_variance, out):
         out[i] = out[i - 2] * min(1.0, DECAY * out[i - 2] / lower) if lower > 0.0 else out[i - 2]
 
 
-@kernel
+@inner
 def tolerance(first, last, tables, variance, bias, bias_variance):
     """Squared difference from the quadric of the least ball that its own error explains; inf without one.
 

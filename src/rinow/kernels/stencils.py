@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import monge
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
 
 SOFTENING = 0.01
 """Added to squared distances, in squared radii of the stencil: two vertices that nearly coincide tell no curvature."""
@@ -34,7 +34,7 @@ class Surface(NamedTuple):
     is_oriented: bool
 
 
-@kernel
+@inner
 def add_aligned(total, vector, align):
     """Add a vector to a total; with `align` its opposite where that makes the smaller angle."""
     if align and total[0] * vector[0] + total[1] * vector[1] + total[2] * vector[2] < 0.0:
@@ -42,7 +42,7 @@ def add_aligned(total, vector, align):
     return total[0] + vector[0], total[1] + vector[1], total[2] + vector[2]
 
 
-@kernel
+@inner
 def area_vector(vertices, v, p, q):
     """Doubled area vector of a triangle."""
     ax, ay, az = vertices[p, 0] - vertices[v, 0], vertices[p, 1] - vertices[v, 1], vertices[p, 2] - vertices[v, 2]
@@ -107,27 +107,27 @@ def mean_edge_lengths(vertices, offsets, neighbours, out):
         out[v] = total / max(offsets[v + 1] - offsets[v], 1)
 
 
-@kernel
+@inner
 def normal_at(v, surface):
     """The normal at a vertex."""
     return surface.normals[v, 0], surface.normals[v, 1], surface.normals[v, 2]
 
 
-@kernel
+@inner
 def squared_distance(vertices, i, j):
     """Squared Euclidean distance of vertices i and j."""
     x, y, z = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1], vertices[j, 2] - vertices[i, 2]
     return x * x + y * y + z * z
 
 
-@kernel
+@inner
 def spokes(w, is_centre, offsets):
     """Rows of the neighbours of w that a stencil grows to: all of them, but none through a hub."""
     first, last = offsets[w], offsets[w + 1]
     return first, (last if is_centre or last - first <= HUB else first)
 
 
-@kernel
+@inner
 def two_rings(v, surface, members, marks):
     """Write v, its neighbours and their neighbours to `members`; how many, and the largest squared distance."""
     offsets, neighbours = surface.offsets, surface.neighbours
@@ -149,7 +149,7 @@ def two_rings(v, surface, members, marks):
     return n, reach
 
 
-@kernel
+@inner
 def facing(members, n, normal, surface):
     """Keep of the members v, its neighbours, and those whose normals are turned little from that of v; how many."""
     x, y, z = normal
@@ -163,7 +163,7 @@ def facing(members, n, normal, surface):
     return kept
 
 
-@kernel
+@inner
 def local_coordinates(members, n, unit, normal, vertices, points):
     """Write to points[i] the tangential coordinates and the height of member i + 1 seen from member 0, over `unit`.
 
@@ -184,7 +184,7 @@ def local_coordinates(members, n, unit, normal, vertices, points):
     return monge.combination(cos, tangent, sin, monge.cross(normal, tangent))
 
 
-@kernel
+@inner
 def turn_to_long_axis(points, n):
     """Turn the points about the normal until x is the direction of their largest spread; cosine and sine of the turn.
 
@@ -203,7 +203,7 @@ def turn_to_long_axis(points, n):
     return cos, sin
 
 
-@kernel
+@inner
 def stretch_to_chords(points, n):
     """Move the points outwards over the plane until the tangential distance is the distance d.
 
