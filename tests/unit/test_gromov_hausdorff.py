@@ -12,12 +12,25 @@ from scipy.spatial.distance import pdist, squareform
 
 from naive import correspondences as naive
 from rinow import MetricSpace, distortion, gromov_hausdorff
+from rinow.comparison import steps
 from rinow.comparison.bounds import diameter_bound, eccentricity_bound, packing_bound
+from rinow.comparison.clock import Clock
 from rinow.comparison.engine import Engine
+from rinow.comparison.gromov_hausdorff import first_interval
+from rinow.comparison.levels import Levels
+from rinow.comparison.symmetry import isometries
 from rinow.errors import InvalidInputError, NotAMetricError
 
 GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "gromov_hausdorff.json").read_text())
 SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes")
+
+
+def hops(rng, n, share=0.3):
+    """Numbers of steps in a random tree with further edges."""
+    edges = np.triu((rng.random((n, n)) < share).astype(float), 1)
+    for i in range(1, n):
+        edges[rng.integers(i), i] = 1.0
+    return shortest_path(edges, directed=False, unweighted=True)
 
 
 def random_space(rng, n):
@@ -29,10 +42,7 @@ def random_space(rng, n):
         places = rng.integers(0, 5, n).astype(float)
         return np.abs(places[:, None] - places)
     if kind == 2:
-        edges = np.triu((rng.random((n, n)) < 0.3).astype(float), 1)
-        for i in range(1, n):
-            edges[rng.integers(i), i] = 1.0
-        return shortest_path(edges, directed=False, unweighted=True)
+        return hops(rng, n)
     D = rng.uniform(0.5, 1.0, (n, n))
     D = np.minimum(D, D.T)
     np.fill_diagonal(D, 0.0)
@@ -200,3 +210,27 @@ def test_bad_limits():
         gromov_hausdorff([[0.0]], [[0.0]], time_limit=math.nan)
     with pytest.raises(InvalidInputError, match="rtol = 1"):
         gromov_hausdorff([[0.0]], [[0.0]], rtol=1.0)
+
+
+def test_levels_are_the_differences_of_distances():
+    rng = np.random.default_rng(61)
+    X, Y = random_space(rng, 6), random_space(rng, 5)
+    levels, gaps = Levels(X, Y), np.unique(np.abs(X.reshape(-1, 1) - Y.reshape(1, -1)))
+    for level in (0.0, *gaps, 0.3, 1.7, 99.0):
+        assert levels.above(level) == min(gaps[gaps > level], default=math.inf)
+        assert levels.up_to(level) == max(gaps[gaps <= level])
+    assert levels.few
+    assert not Levels(*(squareform(pdist(rng.random((40, 2)))) for _ in range(2))).few
+
+
+@pytest.mark.parametrize("seed", range(90, 102))
+def test_climbing_from_below_gives_the_distance_of_graphs(seed):
+    rng = np.random.default_rng(seed)
+    X, Y = (hops(rng, n) for n in rng.integers(2, 6, 2))
+    exact = naive.least_distortion(X.tolist(), Y.tolist())
+    interval = first_interval(X, Y, 0.0)
+    interval.lower = 0.0
+    engine, clock = Engine(X, Y), Clock(math.inf)
+    steps.climb(engine, interval, clock, (isometries(X, clock), isometries(Y, clock)))
+    assert interval.lower == interval.upper == exact
+    assert distortion(interval.pairs, X, Y) == exact

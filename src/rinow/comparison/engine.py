@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.comparison.clock import Clock
+from rinow.comparison.levels import Levels
 from rinow.kernels import compatibility, correspondence_search, correspondences, distortion
 from rinow.kernels.bitsets import prefixes
 from rinow.kernels.compatibility import BIJECTION, MAP, RELATION
@@ -80,6 +81,7 @@ class Engine:
     ) -> None:
         self.DX, self.DY, self.kind, self.both = DX, DY, kind, both
         self.X, self.Y = sorted_rows(DX), sorted_rows(DY)
+        self.levels = Levels(DX, DY)
         self.shape = len(DX), len(DY)
         self.row_levels = np.full(self.shape, float(kind == BIJECTION))
         small = self.row_levels.size * sum(self.shape) < SERIAL_WORK

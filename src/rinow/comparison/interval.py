@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow import tolerances
-from rinow.comparison.engine import Engine
+from rinow.comparison.engine import BIJECTION, Engine
 
 __all__ = ["Interval", "next_difference"]
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 
@@ -62,13 +61,4 @@ class Interval:
 
 def next_difference(engine: Engine, level: float) -> float:
     """Least discrepancy of a distance of X and one of Y that is above a level; inf if there is none."""
-    if engine.kind == 1:
-        return float(np.nextafter(level, math.inf))
-    a, b = np.unique(engine.DX), np.unique(engine.DY)
-    best = math.inf
-    for side in (level, -level):
-        place = np.searchsorted(b, a + side)
-        for shift in (-2, -1, 0, 1):
-            gap = np.abs(a - b[np.clip(place + shift, 0, len(b) - 1)])
-            best = min(best, float(gap[gap > level].min(initial=math.inf)))
-    return best
+    return float(np.nextafter(level, math.inf)) if engine.kind == BIJECTION else engine.levels.above(level)

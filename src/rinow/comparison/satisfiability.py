@@ -28,6 +28,9 @@ Flags = NDArray[np.bool_]
 LARGEST_VARIABLES, LARGEST_CLAUSES = 20_000, 6_000_000
 """Size that still fits: about a gigabyte and half a minute to set up."""
 
+SAMPLE = 50
+"""Pairs whose conflicts are counted before any clause is made."""
+
 FIRST_CONFLICTS = 200
 """Conflicts between the first two looks at the clock; then as many as fit into some tenths of a second."""
 
@@ -61,7 +64,7 @@ class Satisfiability:
         self.error = 0.0
         variables = np.zeros(engine.shape, np.intp)
         variables[possible] = np.arange(1, len(self.pairs) + 1)
-        self.ready = len(self.pairs) <= LARGEST_VARIABLES
+        self.ready = len(self.pairs) <= LARGEST_VARIABLES and self._expected_clauses(level) <= LARGEST_CLAUSES
         if self.ready:
             self._cover(variables, near)
             self._break_symmetry(variables, isometries)
@@ -72,6 +75,14 @@ class Satisfiability:
 
     def __exit__(self, *_: object) -> None:
         self._solver.delete()
+
+    def _expected_clauses(self, level: float) -> float:
+        """Number of clauses of incompatible pairs, from a sample."""
+        x, y = self.pairs.T
+        sample = np.linspace(0, len(x) - 1, min(len(x), SAMPLE)).astype(np.intp)
+        DX, DY, kind = self.engine.DX, self.engine.DY, self.engine.kind
+        wrong = [np.count_nonzero(_discrepancies(kind, DX[x[s], x], DY[y[s], y]) > level) for s in sample]
+        return 0.5 * len(x) * float(np.mean(wrong)) if wrong else 0.0
 
     def lower_level(self, level: float, clock: Clock) -> None:
         """Forbid the pairs of pairs that agree to the last level but not to this one."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from rinow.comparison.clock import Clock
-from rinow.comparison.engine import BIJECTION, Engine, Search
+from rinow.comparison.engine import BIJECTION, RELATION, Engine, Search
 from rinow.comparison.interval import Interval
 from rinow.comparison.satisfiability import Satisfiability, solver_installed
 from rinow.comparison.symmetry import Isometries, isometries
@@ -23,6 +24,9 @@ Symmetries = tuple[Isometries, Isometries]
 
 STARTS, MOVES = 12, 40
 """Tabu searches before the exact one, and moves of each for every point."""
+
+CLIMB = 0.7
+"""Share of the time for levels from below, where they are few."""
 
 SYMMETRY = 0.1
 """Share of the time for finding isometries of both spaces."""
@@ -41,7 +45,11 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
     if engine.kind == BIJECTION:
         symmetries = symmetries[0].exact(), symmetries[1].exact()
     homogeneous = not (symmetries[0].trivial and symmetries[1].trivial)
-    share = 0.05 if homogeneous else 0.2
+    share, climbing = (0.05, 0.05) if homogeneous else (0.2, CLIMB)
+    if engine.kind == RELATION and engine.levels.few:
+        climb(engine, interval, clock.part(climbing * clock.left), symmetries)
+        if interval.closed:
+            return
     possible = branch_and_bound(engine, interval, clock.part(share * clock.left), None, symmetries)
     if possible is not None and not interval.closed:
         satisfiability(engine, interval, clock.part(0.4 * clock.left), possible, symmetries)
@@ -98,6 +106,36 @@ def polish(engine: Engine, interval: Interval, clock: Clock) -> None:
     interval.offer(search.pairs, search.best)
 
 
+def climb(engine: Engine, interval: Interval, clock: Clock, symmetries: Symmetries) -> None:
+    """Refute the levels one by one from the lowest that is open, until one is attained or the time is over.
+
+    Low levels leave less to search than those just below the upper bound.
+    """
+    last = -math.inf
+    while not interval.closed and not clock.over:
+        level = engine.levels.above(float(np.nextafter(interval.lower, -math.inf)))
+        if level >= interval.upper:
+            interval.raise_lower(interval.upper, interval.by)
+        if level >= interval.upper or level <= last:  # the error of isometries may hide the next level
+            return
+        last = level
+        possible = engine.consistent(level, clock)
+        if possible is None:
+            interval.refuted(level, engine, "arc consistency")
+            continue
+        if not engine.fits(possible):
+            return
+        search = Search(engine, possible, level, clock, (symmetries[0].images, symmetries[1].images))
+        exhausted, pairs = search.run(clock)
+        if exhausted:
+            error = symmetries[0].error + symmetries[1].error
+            interval.refuted(level, engine, "search", error * search.depth_of_proof)
+        elif pairs is None:
+            return
+        else:
+            interval.offer(pairs, engine.worst_of(pairs))
+
+
 def branch_and_bound(
     engine: Engine, interval: Interval, clock: Clock, possible: Flags | None, symmetries: Symmetries
 ) -> Flags | None:
@@ -152,9 +190,11 @@ def bisect_by_consistency(engine: Engine, interval: Interval, clock: Clock, poss
     low, high = interval.lower, interval.wanted
     while high - low > BISECTION * high and not interval.closed and not clock.over:
         middle = 0.5 * (low + high)
+        if engine.kind != BIJECTION and engine.levels.few:
+            middle = max(engine.levels.up_to(middle), low)
         left = engine.consistent(middle, clock, possible)
         if left is None:
             interval.refuted(middle, engine, "arc consistency")
             low = max(middle, interval.lower)
         elif not clock.over:
-            high, possible = middle, left
+            high, possible = float(np.nextafter(middle, -math.inf)), left

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, RELATION, worst_of
+from rinow.comparison.levels import Levels
 from rinow.kernels import bijection_tabu, correspondence_tabu
 
 __all__ = ["BijectionTabu", "RelationTabu", "TabuSearch", "graphs"]
@@ -74,6 +75,10 @@ class TabuSearch(ABC):
             elif self._tabu.counters[correspondence_tabu.TOTAL_STALL] >= STALL:
                 self._perturb()
 
+    def _level_below(self, level: float) -> float:
+        """The level itself, or the last below it that counts."""
+        return level
+
     @abstractmethod
     def _threshold(self) -> np.float32:
         """The target in the unit of the table."""
@@ -96,7 +101,7 @@ class TabuSearch(ABC):
 
     def _aim(self) -> None:
         """Set a new target below the best value and forget the totals."""
-        self._target = self.best * (1.0 - self._gap)
+        self._target = self._level_below(self.best * (1.0 - self._gap))
         self._rebuild()
         self._tabu.totals[1] = math.inf
         self._tabu.counters[correspondence_tabu.TOTAL_STALL] = 0
@@ -127,7 +132,11 @@ class RelationTabu(TabuSearch):
 
     def __init__(self, DX: Floats, DY: Floats, f: Indices, g: Indices, seed: int) -> None:
         self._scale = float(max(DX.max(), DY.max())) or 1.0
+        self._levels = Levels(DX, DY)
         super().__init__(DX, DY, DX / self._scale, DY / self._scale, f, g, seed)
+
+    def _level_below(self, level: float) -> float:
+        return max(self._levels.up_to(level), 0.0) if self._levels.few else level
 
     def _threshold(self) -> np.float32:
         return np.float32(self._target / self._scale)
