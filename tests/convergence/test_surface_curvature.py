@@ -53,6 +53,15 @@ def test_fits_converge_with_the_orders_they_choose(surface):
         assert e[-1] < 1e-4
 
 
+@pytest.mark.parametrize("surface", SURFACES)
+def test_averaged_defects_converge_on_irregular_meshes(surface):
+    # Chords leave a metric that is wrong by h², of which averages over growing balls see less and less: order 1 to 2
+    # by the balls chosen; measured 1.2 to 1.6.
+    e = errors(surface, "intrinsic")
+    assert order(e) > 1.1
+    assert e[-1] < 0.02
+
+
 @pytest.mark.parametrize("quality", ("best", "fast"))
 @pytest.mark.parametrize("surface", ("ellipsoid", "torus", "saddle"))
 def test_spread_is_calibrated_on_noisy_meshes(surface, quality):

@@ -1,14 +1,18 @@
 """Curvature from edge lengths alone: closed forms, orders, invariance, noise, faults of meshes."""
 
+import math
+
 import numpy as np
 import pytest
 
 import shapes
 from metric_shapes import flat_torus, hyperbolic_patch
+from naive import development as naive
 from rinow import IntrinsicMesh, InvalidInputError, TriangleMesh, VertexStatus, surface_curvature
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.intrinsic import CALIBRATION, combination, intrinsic_curvature
 from rinow.curvature.length_noise import LengthNoise
+from rinow.kernels import smoothing
 
 TORUS = shapes.noisy(shapes.irregular_torus(1500), 0.05)
 
@@ -68,6 +72,31 @@ def test_total_curvature_is_kept_by_every_step():
     # The balance is approximate; without it the step misses 2 % of the absolute total.
     assert abs(np.sum(flow.areas * once)) < 0.005 * total
     np.testing.assert_allclose(flow.step(np.ones(len(once))), 1, atol=1e-12)
+
+
+@pytest.mark.parametrize("make", [shapes.irregular_torus, shapes.irregular_ellipsoid])
+@pytest.mark.parametrize("reach", [1.5, 2.1, 3.5])
+def test_one_step_is_a_regression_over_an_unrolled_neighbourhood(make, reach):
+    shape = make(300)
+    mesh = TriangleMesh(shape.vertices, shape.faces)
+    flow, n, faces = CurvatureFlow(mesh), mesh.n_vertices, [tuple(f) for f in shape.faces.tolist()]
+
+    def length(a, b):
+        return math.dist(shape.vertices[a], shape.vertices[b])
+
+    radii, t = reach * flow.spacing, mesh.topology
+    ball = (radii, flow.areas, t.vertex_is_manifold, flow.has_data, flow.metric, 4)
+    counts, starts = np.empty(n, np.int64), np.zeros(n + 1, np.int64)
+    smoothing.count_rows(*ball, counts)
+    np.cumsum(counts, out=starts[1:])
+    columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
+    smoothing.regression_rows(*ball, starts, columns, values, variances)
+    for v in range(0, n, 30):
+        expected = naive.regression_row(naive.develop(faces, length, v, radii[v]), flow.areas, radii[v])
+        row = slice(starts[v], starts[v + 1])
+        assert sorted(columns[row]) == sorted(expected)
+        # Sums of some ten numbers of the size 0.1 to 1.
+        np.testing.assert_allclose(values[row], [expected[w] for w in columns[row]], atol=1e-10)
 
 
 def test_orders_reproduce_what_their_polynomials_say():

@@ -349,7 +349,6 @@ def test_meshes_of_other_libraries():
         ({"method": "sectional", "radius": [1.0, 2.0]}, "is not a positive length"),
         ({"method": "sectional", "radius": "big"}, "radius has type"),
         ({"method": "lifted", "radius": 1.0}, "radius = 1.0 is not for method 'lifted'"),
-        ({"method": "lifted", "radius": 1.0}, "radius = 1.0 is not for method 'lifted'"),
     ],
 )
 def test_wrong_options(options, message):
