@@ -9,6 +9,7 @@ import shapes
 from metric_shapes import flat_torus, hyperbolic_patch
 from naive import development as naive
 from rinow import IntrinsicMesh, InvalidInputError, TriangleMesh, VertexStatus, surface_curvature
+from rinow.curvature import intrinsic
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.intrinsic import CALIBRATION, combination, intrinsic_curvature
 from rinow.curvature.length_noise import LengthNoise
@@ -168,6 +169,21 @@ def test_order_orientation_and_unit_do_not_matter():
     for scale in (1e-3, 1e3):
         scaled = surface_curvature((V * scale, F), method="intrinsic").gaussian
         np.testing.assert_allclose(scaled * scale**2, K, **close)
+
+
+def test_large_meshes_are_computed_in_another_order(monkeypatch):
+    p = np.random.default_rng(7).permutation(len(TORUS.vertices))
+    V, F = TORUS.vertices[p], np.argsort(p)[TORUS.faces]
+    mesh = TriangleMesh(np.vstack([V, [[9.0, 9.0, 9.0]]]), np.vstack([F, [[3, 3, 4]]]))  # a lonely vertex, a bad face
+    assert intrinsic._closer_order(mesh) is None  # it is small
+    expected = intrinsic_curvature(mesh)
+    monkeypatch.setattr(intrinsic, "LARGE", 100)
+    assert sorted(intrinsic._closer_order(mesh)) == list(range(mesh.n_vertices))
+    actual = intrinsic_curvature(mesh)
+    for name in intrinsic.FIELDS:
+        # Places in the plane are means in another order: rounding, over areas of 0.01.
+        np.testing.assert_allclose(getattr(actual, name), getattr(expected, name), rtol=1e-7, atol=1e-9, err_msg=name)
+    assert intrinsic._closer_order(TriangleMesh(*shapes.irregular_torus(3000)[:2])) is None  # neighbours are close
 
 
 # ------------------------------------------------------------------ faults
