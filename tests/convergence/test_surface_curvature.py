@@ -53,6 +53,15 @@ def test_fits_converge_with_the_orders_they_choose(surface):
         assert e[-1] < 1e-4
 
 
+@pytest.mark.parametrize("surface", SURFACES)
+def test_averaged_defects_converge_on_irregular_meshes(surface):
+    # Chords leave a metric that is wrong by h², of which averages over growing balls see less and less: order 1 to 2
+    # by the balls chosen; measured 1.08 on the sphere, to 1.6 on the ellipsoid.
+    e = errors(surface, "intrinsic")
+    assert order(e) > 1
+    assert e[-1] < 0.02
+
+
 @pytest.mark.parametrize("quality", ("best", "fast"))
 @pytest.mark.parametrize("surface", ("ellipsoid", "torus", "saddle"))
 def test_spread_is_calibrated_on_noisy_meshes(surface, quality):
@@ -83,7 +92,8 @@ def test_stars_of_geodesic_distances_converge(surface, method):
     e = []
     for n in (1000, 4000, 16000)[: 3 if method == "wald" else 2]:
         shape = SURFACES[surface](n)
-        c = surface_curvature((shape.vertices, shape.faces), method=method, radius=n**-0.25)
+        radius = (1.0 if method == "wald" else 1.5) * n**-0.25  # 1.7 to 5 spacings
+        c = surface_curvature((shape.vertices, shape.faces), method=method, radius=radius)
         assert (c.status == 0).all()
         e.append(np.sqrt(np.mean((c.gaussian - shape.gaussian) ** 2) / np.mean(shape.gaussian**2)))
     assert order(np.array(e)) > 0.8

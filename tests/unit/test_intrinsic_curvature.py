@@ -1,15 +1,20 @@
 """Curvature from edge lengths alone: closed forms, orders, invariance, noise, faults of meshes."""
 
+import math
+
 import numpy as np
 import pytest
 
 import shapes
 from metric_shapes import flat_torus, hyperbolic_patch
+from naive import development as naive
 from rinow import IntrinsicMesh, InvalidInputError, TriangleMesh, VertexStatus, surface_curvature
+from rinow.curvature import intrinsic
 from rinow.curvature.angle_defect import longest_edges
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.intrinsic import CALIBRATION, combination, intrinsic_curvature
 from rinow.curvature.length_noise import LengthNoise
+from rinow.kernels import smoothing
 
 TORUS = shapes.noisy(shapes.irregular_torus(1500), 0.05)
 
@@ -69,6 +74,31 @@ def test_total_curvature_is_kept_by_every_step():
     # The balance is approximate; without it the step misses 2 % of the absolute total.
     assert abs(np.sum(flow.areas * once)) < 0.005 * total
     np.testing.assert_allclose(flow.step(np.ones(len(once))), 1, atol=1e-12)
+
+
+@pytest.mark.parametrize("make", [shapes.irregular_torus, shapes.irregular_ellipsoid])
+@pytest.mark.parametrize("reach", [1.5, 2.1, 3.5])
+def test_one_step_is_a_regression_over_an_unrolled_neighbourhood(make, reach):
+    shape = make(300)
+    mesh = TriangleMesh(shape.vertices, shape.faces)
+    flow, n, faces = CurvatureFlow(mesh), mesh.n_vertices, [tuple(f) for f in shape.faces.tolist()]
+
+    def length(a, b):
+        return math.dist(shape.vertices[a], shape.vertices[b])
+
+    radii, t = reach * flow.spacing, mesh.topology
+    ball = (radii, flow.areas, t.vertex_is_manifold, flow.has_data, flow.metric, 4)
+    counts, starts = np.empty(n, np.int64), np.zeros(n + 1, np.int64)
+    smoothing.count_rows(*ball, counts)
+    np.cumsum(counts, out=starts[1:])
+    columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
+    smoothing.regression_rows(*ball, starts, columns, values, variances)
+    for v in range(0, n, 30):
+        expected = naive.regression_row(naive.develop(faces, length, v, radii[v]), flow.areas, radii[v])
+        row = slice(starts[v], starts[v + 1])
+        assert sorted(columns[row]) == sorted(expected)
+        # Sums of some ten numbers of the size 0.1 to 1.
+        np.testing.assert_allclose(values[row], [expected[w] for w in columns[row]], atol=1e-10)
 
 
 def test_orders_reproduce_what_their_polynomials_say():
@@ -142,6 +172,21 @@ def test_order_orientation_and_unit_do_not_matter():
     for scale in (1e-3, 1e3):
         scaled = surface_curvature((V * scale, F), method="intrinsic").gaussian
         np.testing.assert_allclose(scaled * scale**2, K, **close)
+
+
+def test_large_meshes_are_computed_in_another_order(monkeypatch):
+    p = np.random.default_rng(7).permutation(len(TORUS.vertices))
+    V, F = TORUS.vertices[p], np.argsort(p)[TORUS.faces]
+    mesh = TriangleMesh(np.vstack([V, [[9.0, 9.0, 9.0]]]), np.vstack([F, [[3, 3, 4]]]))  # a lonely vertex, a bad face
+    assert intrinsic._closer_order(mesh) is None  # it is small
+    expected = intrinsic_curvature(mesh)
+    monkeypatch.setattr(intrinsic, "LARGE", 100)
+    assert sorted(intrinsic._closer_order(mesh)) == list(range(mesh.n_vertices))
+    actual = intrinsic_curvature(mesh)
+    for name in intrinsic.FIELDS:
+        # Places in the plane are means in another order: rounding, over areas of 0.01.
+        np.testing.assert_allclose(getattr(actual, name), getattr(expected, name), rtol=1e-7, atol=1e-9, err_msg=name)
+    assert intrinsic._closer_order(TriangleMesh(*shapes.irregular_torus(3000)[:2])) is None  # neighbours are close
 
 
 # ------------------------------------------------------------------ faults

@@ -367,7 +367,6 @@ def test_meshes_of_other_libraries():
         ({"method": "sectional", "radius": float("nan")}, "radius = nan is not a positive length"),
         ({"method": "sectional", "radius": [1.0, 2.0]}, "is not a positive length"),
         ({"method": "sectional", "radius": "big"}, "radius has type"),
-        ({"method": "wald", "radius": 1.0}, "radius = 1.0 is not for method 'wald'"),
         ({"method": "lifted", "radius": 1.0}, "radius = 1.0 is not for method 'lifted'"),
     ],
 )
