@@ -130,8 +130,8 @@ def intrinsic_curvature(
     """
     order = _closer_order(mesh)
     if order is None:
-        return _in_given_order(mesh, radius)
-    found = _in_given_order(_renumbered(mesh, order), radius)
+        return _in_given_order(mesh, radius, most_steps)
+    found = _in_given_order(_renumbered(mesh, order), radius, most_steps)
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     return IntrinsicCurvature(*(getattr(found, name)[rank] for name in FIELDS))
@@ -156,7 +156,7 @@ def _renumbered(mesh: TriangleMesh | IntrinsicMesh, order: NDArray[np.intp]) -> 
     return IntrinsicMesh(faces[by_vertex], mesh.edge_lengths[by_vertex], mesh.n_vertices)
 
 
-def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None) -> IntrinsicCurvature:
+def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, most_steps: int) -> IntrinsicCurvature:
     """The curvature computed in the order of the vertices."""
     flow = CurvatureFlow(mesh)
     noise = LengthNoise.of(flow)
