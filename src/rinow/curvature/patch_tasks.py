@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -36,9 +36,9 @@ class Tasks:
 
     def run(self, function: Callable[..., Any], parts: list[slice], share: float) -> Iterator[tuple[slice, Any]]:
         """Each part with the result of the function; `share` of all work is done afterwards."""
-        results: Iterable[Any] = self.executor.map(function, parts)
-        for part, result in zip(parts, results, strict=True):
-            yield part, result
+        results = iter(self.executor.map(function, parts))
+        for part in parts:
+            yield part, next(results)  # without a name, which would keep it while the next one is made
             self.done += share / len(parts)
             self.report(self.done)
 
@@ -72,8 +72,9 @@ def fill_tables(fitting: Fitting, known: bool, tasks: Tasks, share: float) -> pa
     rows = fitting.centres.rows
     tables = _empty_tables(int(rows[-1]), known)
     for part, found in tasks.run(partial(_tables_of, fitting, known), _parts(len(rows) - 1), share):
-        for whole, piece in zip(tables, found, strict=True):
-            whole[rows[part.start] : rows[part.stop]] = piece
+        for i, whole in enumerate(tables):
+            whole[rows[part.start] : rows[part.stop]] = found[i]
+        del found
     return tables
 
 
@@ -111,6 +112,7 @@ def add_patches(
         first = parts[-1].stop
     for _, (vertices, values) in tasks.run(partial(_values_of, fitting, cores, risks, power), parts, share):
         patches.add_values(vertices, values, totals)
+        del vertices, values
 
 
 def _values_of(fitting: Fitting, cores: Floats, risks: Floats, power: float, part: slice) -> tuple[Any, Floats]:

@@ -183,13 +183,15 @@ def _least(
     ladder: Ladder, spacing: Floats, power: int, tables: patch_fits.Tables, rows: NDArray[np.int64],
     low: Ints, high: Ints, links: tuple[Ints, Ints], passes: int, logs: Floats,
 ) -> Choice:  # fmt: skip
-    """The choice of least risk, which is in units of length; its logarithms in those of the spacings."""
+    """The choice of least risk, which is in units of length; its logarithms in those of the spacings.
+
+    The tables, the largest arrays of all, are overwritten by their averages where two passes are made.
+    """
     place = (spacing, power, rows, low, high, links)
-    jump = _averaged(tables.jump, *place, passes)
-    tables = tables._replace(jump=jump)  # what is averaged is needed no more, and its memory is, on large meshes
-    bias_variance = _averaged(tables.bias_variance, *place, passes)
-    tables = tables._replace(bias_variance=bias_variance)
-    bias, variance = _averaged(tables.bias, *place, passes), _averaged(tables.variance, *place, 1)
+    own = tables.bias[:, :1].copy()
+    bias, bias_variance, jump = (_averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance, tables.jump))
+    tables = tables._replace(bias=own, bias_variance=bias_variance, jump=jump)
+    variance = _averaged(tables.variance, *place, 1)
     choice = _empty_choice(len(spacing))
     averages = (variance, bias, bias_variance, jump)
     risks.least_risks(rows, low, high, ladder.reaches, tables, *averages, RESOLVED**power, *choice, logs)
@@ -200,10 +202,11 @@ def _averaged(
     values: NDArray[np.float32], spacing: Floats, power: int, rows: NDArray[np.int64], low: Ints, high: Ints,
     links: tuple[Ints, Ints], passes: int,
 ) -> NDArray[np.float32]:  # fmt: skip
+    """Means over the centres around, taken `passes` times; two passes end in the memory of the values."""
+    spare = np.empty_like(values)
     for _ in range(passes):
-        out = np.empty_like(values)
-        risks.average_rows(values, spacing, power, rows, low, high, links[1], links[0], out)
-        values = out
+        risks.average_rows(values, spacing, power, rows, low, high, links[1], links[0], spare)
+        values, spare = spare, values
     return values
 
 
