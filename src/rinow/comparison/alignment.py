@@ -88,7 +88,7 @@ def _farthest(P: Floats, Q: Floats, tree: KDTree) -> float:
 def _matched(P: Floats, moved: Floats, Q: Floats, tree: KDTree) -> Iterator[tuple[Indices, Indices]]:
     """Nearest points both ways, again after each best motion for the last ones."""
     for _ in range(MATCHES):
-        f, g = tree.query(moved)[1], KDTree(moved).query(Q)[1]
+        f, g = np.asarray(tree.query(moved)[1]), np.asarray(KDTree(moved).query(Q)[1])
         yield f, g
         A, B = np.concatenate([P, P[g]]), np.concatenate([Q[f], Q])
         a, b = A.mean(axis=0), B.mean(axis=0)
