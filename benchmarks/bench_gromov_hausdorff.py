@@ -73,6 +73,9 @@ def hops(graph: nx.Graph) -> rinow.MetricSpace:
 GRAPHS = {
     "tree": lambda n, s: nx.random_labeled_tree(n, seed=s),
     "G(n,.05)": lambda n, s: nx.gnp_random_graph(n, 0.05, seed=s),
+    "G(n,.1)": lambda n, s: nx.gnp_random_graph(n, 0.1, seed=s),
+    "preferential": lambda n, s: nx.barabasi_albert_graph(n, 2, seed=s),
+    "3-regular": lambda n, s: nx.random_regular_graph(3, n, seed=s),
     "geometric": lambda n, s: nx.random_geometric_graph(n, 0.18, seed=s),
     "small world": lambda n, s: nx.connected_watts_strogatz_graph(n, 4, 0.3, seed=s),
 }

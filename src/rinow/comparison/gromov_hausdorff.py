@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.comparison import bounds, large, steps
+from rinow.comparison.alignment import align
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import RELATION, Engine, worst_of
 from rinow.comparison.interval import Interval
@@ -175,8 +176,9 @@ def _compare(DX: Floats, DY: Floats, clock: Clock, rtol: float) -> Interval:
     if interval.closed or clock.over:
         return interval
     interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
+    align(DX, DY, interval, clock.part(0.1 * clock.left))
     if len(DX) * len(DY) * (len(DX) + len(DY)) < large.LARGE:
-        engine = Engine(DX, DY, clock=clock)
+        engine = Engine(DX, DY, clock=clock.part(0.3 * clock.left))
         interval.raise_lower(engine.row_bound, "sorted distances")
         steps.close(engine, interval, clock)
     else:

@@ -25,6 +25,12 @@ Symmetries = tuple[Isometries, Isometries]
 STARTS, MOVES = 12, 40
 """Tabu searches before the exact one, and moves of each for every point."""
 
+PROOF = 0.25
+"""Share of the time of the tabu searches for a proof that the first one found the best."""
+
+WARM, LONGEST_WARM, WARM_SPEED = 0.15, 0.6, 130_000
+"""Share of the time for tabu search; more, up to another share, where many points need it: so many pairs a second."""
+
 CLIMB = 0.7
 """Share of the time for levels from below, where they are few."""
 
@@ -37,7 +43,9 @@ BISECTION = 2e-3
 
 def close(engine: Engine, interval: Interval, clock: Clock) -> None:
     """All steps in turn, until the interval is closed or the time is over."""
-    warm_start(engine, interval, clock.part(0.15 * clock.left))
+    n_points = sum(engine.shape)
+    warm = max(WARM * clock.left, min(LONGEST_WARM * clock.left, n_points * n_points / WARM_SPEED))
+    warm_start(engine, interval, clock.part(warm))
     if interval.closed:
         return
     listing = clock.part(SYMMETRY * clock.left)
@@ -59,25 +67,25 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
 
 
 def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: float = 0.0) -> None:
-    """Tabu search from several starts: the rows that agree best, then random maps.
+    """Tabu search from several starts: the rows that agree best and the best relation so far, then random maps.
 
     Nearly isometric spaces are done after the first: arc consistency refutes what is below.
     """
     rng = np.random.default_rng(20)
-    for k, search in enumerate(_searches(engine, rng)):
+    for k, search in enumerate(_searches(engine, rng, interval)):
         search.run(MOVES * sum(engine.shape), clock, max(target, interval.lower))
         interval.offer(search.pairs, search.best)
         if interval.upper <= target:
             return
         if k == 0 and not interval.closed:
             level = interval.wanted
-            if engine.consistent(level, clock) is None:
+            if engine.consistent(level, clock.part(PROOF * clock.left)) is None:
                 interval.refuted(level, engine, "arc consistency")
         if interval.closed or clock.over or k + 1 == STARTS:
             return
 
 
-def _searches(engine: Engine, rng: np.random.Generator) -> Iterator[TabuSearch]:
+def _searches(engine: Engine, rng: np.random.Generator, interval: Interval) -> Iterator[TabuSearch]:
     """Tabu searches without end."""
     (n, m), levels, seed = engine.shape, engine.row_levels, 0
     if engine.kind == BIJECTION:
@@ -86,17 +94,27 @@ def _searches(engine: Engine, rng: np.random.Generator) -> Iterator[TabuSearch]:
             yield BijectionTabu(engine.DX, engine.DY, f, seed)
             f, seed = rng.permutation(n), seed + 1
     f, g = levels.argmin(axis=1), levels.argmin(axis=0)
+    starts = [RelationTabu(engine.DX, engine.DY, *maps, k) for k, maps in enumerate(((f, g), _maps(engine, interval)))]
+    yield from sorted(starts, key=lambda search: search.best)
+    f, g, seed = rng.integers(m, size=n), rng.integers(n, size=m), len(starts)
     while True:
         yield RelationTabu(engine.DX, engine.DY, f, g, seed)
         f, g, seed = rng.integers(m, size=n), rng.integers(n, size=m), seed + 1
 
 
-def polish(engine: Engine, interval: Interval, clock: Clock) -> None:
-    """Tabu search from the best relation, in the hope of leaving out many small improvements."""
+def _maps(engine: Engine, interval: Interval) -> tuple[Indices, Indices]:
+    """An image of each point in the best relation."""
     n, m = engine.shape
     f, g = np.zeros(n, np.intp), np.zeros(m, np.intp)
     f[interval.pairs[:, 0]] = interval.pairs[:, 1]
     g[interval.pairs[:, 1]] = interval.pairs[:, 0]
+    return f, g
+
+
+def polish(engine: Engine, interval: Interval, clock: Clock) -> None:
+    """Tabu search from the best relation, in the hope of leaving out many small improvements."""
+    n, m = engine.shape
+    f, g = _maps(engine, interval)
     seed = len(interval.pairs)
     bijective = engine.kind == BIJECTION
     search = (

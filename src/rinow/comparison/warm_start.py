@@ -18,8 +18,11 @@ __all__ = ["BijectionTabu", "RelationTabu", "TabuSearch", "graphs"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-GAP, LEAST_GAP, RESET_GAP = 0.03, 0.001, 0.02
-"""The target lies this share below the best value; it shrinks when it is missed, and starts anew."""
+GAP, LARGEST_GAP, LEAST_GAP, RESET_GAP = 0.03, 0.25, 0.001, 0.02
+"""The target lies this share below the best value.
+
+The share grows when the target is met, shrinks when it is missed, and starts anew.
+"""
 
 STALL = 600
 """Moves without progress before the search returns to its best maps and perturbs them."""
@@ -111,7 +114,7 @@ class TabuSearch(ABC):
         value = worst_of(self.kind, self._DX, self._DY, pairs)
         if value < self.best:
             self.best, self.pairs = value, pairs
-            self._gap = GAP
+            self._gap = min(LARGEST_GAP, max(GAP, 2.0 * self._gap))
         else:
             self._gap *= 0.7
         self._aim()

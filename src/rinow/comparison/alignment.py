@@ -1,0 +1,96 @@
+"""Maps between spaces that are nearly sets of points of a space of few dimensions: placed there, turned, and matched.
+
+Distances give coordinates up to an isometry by classical scaling; that they may fit badly costs nothing but quality: a
+map is measured with the distances.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+from scipy.spatial import KDTree
+
+from rinow.comparison.clock import Clock
+from rinow.comparison.engine import RELATION, worst_of
+from rinow.comparison.interval import Interval
+from rinow.comparison.warm_start import graphs
+
+__all__ = ["align", "coordinates"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+DIMENSIONS, SMALL_SPREAD = 3, 0.05
+"""Most dimensions, and share of the largest variance from which an axis counts."""
+
+LARGEST = 1500
+"""Points of a space that is still placed: the cost is cubic."""
+
+ANGLES, TURNS = 24, 48
+"""Rotations of the plane, and of other spaces, from which matching starts; each with its mirror image."""
+
+TRIED, MATCHES = 16, 6
+"""Rotations that bring the sets nearest to each other, and rounds of matching and turning from each."""
+
+
+def align(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
+    """Offer maps f: X → Y and g: Y → X whose graphs together have the least distortion of those tried."""
+    if max(len(DX), len(DY)) > LARGEST or clock.over:
+        return
+    P, Q = coordinates(DX), coordinates(DY)
+    d = max(P.shape[1], Q.shape[1])
+    P, Q = (np.pad(points, ((0, 0), (0, d - points.shape[1]))) for points in (P, Q))
+    tree = KDTree(Q)
+    turns = sorted(_turns(d), key=lambda turn: _farthest(P @ turn, Q, tree))
+    for turn in turns[:TRIED]:
+        for f, g in _matched(P, P @ turn, Q, tree):
+            pairs = graphs(f, g)
+            interval.offer(pairs, worst_of(RELATION, DX, DY, pairs))
+        if clock.over or interval.closed:
+            return
+
+
+def coordinates(D: Floats) -> Floats:
+    """(n, d): coordinates around their mean by classical scaling, d at most 3."""
+    squares = D * D
+    means = squares.mean(axis=1)
+    products = -0.5 * (squares - means[:, None] - means + means.mean())
+    n = len(D)
+    values, vectors = eigh(products, subset_by_index=[max(n - DIMENSIONS, 0), n - 1])
+    keep = values >= SMALL_SPREAD * values[-1]
+    keep[-1] = True
+    return vectors[:, keep] * np.sqrt(np.maximum(values[keep], 0.0))
+
+
+def _turns(d: int) -> Iterator[Floats]:
+    """Rotations and reflections: a grid in the plane, random ones elsewhere."""
+    mirror = np.diag([-1.0] + [1.0] * (d - 1))
+    rng = np.random.default_rng(23)
+    for k in range(1 if d == 1 else ANGLES if d == 2 else TURNS):
+        turn = np.eye(d)
+        if d == 2:
+            c, s = np.cos(2 * np.pi * k / ANGLES), np.sin(2 * np.pi * k / ANGLES)
+            turn = np.array([[c, -s], [s, c]])
+        elif k > 0:
+            turn = np.linalg.qr(rng.normal(size=(d, d)))[0]
+        yield turn
+        yield mirror @ turn
+
+
+def _farthest(P: Floats, Q: Floats, tree: KDTree) -> float:
+    """Hausdorff distance of two sets of points."""
+    return float(max(tree.query(P)[0].max(), KDTree(P).query(Q)[0].max()))
+
+
+def _matched(P: Floats, moved: Floats, Q: Floats, tree: KDTree) -> Iterator[tuple[Indices, Indices]]:
+    """Nearest points both ways, again after each best motion for the last ones."""
+    for _ in range(MATCHES):
+        f, g = np.asarray(tree.query(moved)[1]), np.asarray(KDTree(moved).query(Q)[1])
+        yield f, g
+        A, B = np.concatenate([P, P[g]]), np.concatenate([Q[f], Q])
+        a, b = A.mean(axis=0), B.mean(axis=0)
+        U, _, V = np.linalg.svd((A - a).T @ (B - b))
+        moved = (P - a) @ (U @ V) + b
