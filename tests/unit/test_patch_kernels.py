@@ -169,19 +169,6 @@ def test_a_ball_does_not_enter_another_sheet():
         assert (order[work.members[:n]] < len(patch.vertices)).all()
 
 
-def test_a_ball_stops_at_barriers_but_holds_them():
-    patch = shapes.open_patch(400)
-    line = np.arange(400) // 20 == 11  # a row of vertices across the patch, near x = 0.16
-    sheet, order = patch_sheet(TriangleMesh(patch.vertices, patch.faces), line)
-    centre = int(np.flatnonzero(order == np.argmin(np.linalg.norm(patch.vertices - (-0.4, 0, 0), axis=1)))[0])
-    work = balls.ball(len(order), 4096)
-    n = balls.grow(centre, flat_frames(sheet, np.array([centre], np.int32))[0], 7.0, 1, sheet, work)
-    rows = order[work.members[:n]] // 20
-    assert n > 60
-    assert rows.max() == 11
-    assert np.count_nonzero(rows == 11) > 3
-
-
 @pytest.mark.parametrize("radius", [0.9, 3.0])
 def test_centres_cover_the_sheet_and_are_in_no_disc_of_each_other(radius):
     centres, sizes = cover(SHEET, np.full(len(INDEX), radius))

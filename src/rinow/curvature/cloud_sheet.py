@@ -44,8 +44,7 @@ def cloud_sheet(points: Floats) -> tuple[balls.Sheet, Bools]:
         stencils.ring_directions(vectors * signs[:, None], False, offsets, neighbours, smooth)
         vectors, signs = smooth.copy(), np.ones(len(points))
     spacing = _spacing(points, near, offsets, neighbours)
-    surface = (points, smooth, offsets, neighbours, spacing, np.zeros(len(points), np.bool_))
-    return balls.Sheet(*surface, True), gaps > BORDER_GAP
+    return balls.Sheet(points, smooth, offsets, neighbours, spacing, True), gaps > BORDER_GAP
 
 
 def _spacing(points: Floats, near: Indices, offsets: NDArray[np.int32], neighbours: NDArray[np.int32]) -> Floats:

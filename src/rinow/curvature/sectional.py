@@ -66,7 +66,6 @@ def sectional(
     *,
     quality: str = "best",
     radius: float | None = None,
-    barriers: NDArray[np.bool_] | None = None,
     progress: Progress | None = None,
     executor: Executor | None = None,
 ) -> Estimate:
@@ -80,9 +79,6 @@ def sectional(
         How densely patches lie, and whether each chooses its own order and radius or takes those of a sample near it.
     radius : float, optional
         Radius of all balls, in the unit of length; by default the data decide.
-    barriers : (n_vertices,) ndarray of bool, optional
-        Vertices that balls reach but do not grow beyond, such as those on crease edges: curvature beside a crease
-        then comes from its own side.
     progress : callable, optional
         Called with the number of vertices done and their total.
     executor : Executor, optional
@@ -114,7 +110,7 @@ def sectional(
     auto : Together with `intrinsic`.
     """
     is_stray, on_edge, ends = stray_vertices(mesh)
-    sheet, index = patch_sheet(mesh, barriers, is_stray)
+    sheet, index = patch_sheet(mesh, is_stray)
     n = mesh.n_vertices
     tasks = Tasks(executor or SerialExecutor())
     if progress is not None:

@@ -12,17 +12,13 @@ from rinow.mesh import TriangleMesh
 __all__ = ["patch_sheet"]
 
 
-def patch_sheet(
-    mesh: TriangleMesh, barriers: NDArray[np.bool_] | None = None, left_out: NDArray[np.bool_] | None = None
-) -> tuple[balls.Sheet, NDArray[np.intp]]:
+def patch_sheet(mesh: TriangleMesh, left_out: NDArray[np.bool_] | None = None) -> tuple[balls.Sheet, NDArray[np.intp]]:
     """The sheet, and the index in the mesh of each of its vertices.
 
     Parameters
     ----------
     mesh : TriangleMesh
         The surface.
-    barriers : (n_vertices,) ndarray of bool, optional
-        Vertices that balls reach but do not grow beyond, such as those on crease edges.
     left_out : (n_vertices,) ndarray of bool, optional
         Vertices that do not belong to the surface.
 
@@ -41,9 +37,8 @@ def patch_sheet(
     rank = np.full(mesh.n_vertices, -1, np.int32)
     rank[index] = np.arange(len(index), dtype=np.int32)
     offsets, neighbours = _rows(t.neighbour_offsets, t.neighbours, index, rank)
-    is_barrier = np.zeros(len(index), np.bool_) if barriers is None else barriers[index]
-    surface = (mesh.vertices[index], normals[index], offsets, neighbours, spacing[index], is_barrier)
-    return balls.Sheet(*surface, t.is_orientable), index
+    place = mesh.vertices[index], normals[index]
+    return balls.Sheet(*place, offsets, neighbours, spacing[index], t.is_orientable), index
 
 
 def _rows(

@@ -20,8 +20,8 @@ RISE, STEP = 0.8, 1.0
 class Sheet(NamedTuple):
     """A surface as the fits see it, its vertices in an order that keeps neighbours together.
 
-    Positions and unit normals (n, 3); compressed rows of neighbours (int32); spacing (n,); vertices (n,) that balls
-    reach but do not grow beyond; and whether the normals agree in sign.
+    Positions and unit normals (n, 3); compressed rows of neighbours (int32); spacing (n,); and
+    whether the normals agree in sign.
     """
 
     vertices: np.ndarray
@@ -29,7 +29,6 @@ class Sheet(NamedTuple):
     offsets: np.ndarray
     neighbours: np.ndarray
     spacing: np.ndarray
-    is_barrier: np.ndarray
     is_oriented: bool
 
 
@@ -66,7 +65,7 @@ def gather(members, first, last, spacing, reach, epoch, sheet, work):
     for i in range(first, last):
         p = members[i]
         begin, end = sheet.offsets[p], sheet.offsets[p + 1]
-        if i > 0 and (end - begin > HUB or sheet.is_barrier[p]):
+        if i > 0 and end - begin > HUB:
             continue
         for k in range(begin, end):
             q = sheet.neighbours[k]

@@ -36,20 +36,19 @@ def shape_keys(vertices, offsets, neighbours, out):
 @inner
 def disc(v, radius, epoch, sheet, marks, members):
     """Write the vertices within a distance of v, reached over such vertices; how many."""
-    vertices, offsets, neighbours, is_barrier = sheet.vertices, sheet.offsets, sheet.neighbours, sheet.is_barrier
+    vertices, offsets, neighbours = sheet.vertices, sheet.offsets, sheet.neighbours
     members[0] = v
     marks[v] = epoch
     done, n = 0, 1
     while done < n:
         p = members[done]
-        if done == 0 or not is_barrier[p]:
-            for i in range(offsets[p], offsets[p + 1]):
-                q = neighbours[i]
-                if marks[q] != epoch:
-                    marks[q] = epoch
-                    if stencils.squared_distance(vertices, v, q) < radius * radius:
-                        members[n] = q
-                        n += 1
+        for i in range(offsets[p], offsets[p + 1]):
+            q = neighbours[i]
+            if marks[q] != epoch:
+                marks[q] = epoch
+                if stencils.squared_distance(vertices, v, q) < radius * radius:
+                    members[n] = q
+                    n += 1
         done += 1
     return n
 
