@@ -197,6 +197,35 @@ def test_the_centre_of_a_large_fan_is_no_shortcut_between_its_neighbours():
 
 # ------------------------------------------------------------------ damaged meshes
 
+TETRAHEDRON = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+ITS_FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+SMALL = {
+    "one face": (TETRAHEDRON[:3], [[0, 1, 2]]),
+    "closed": (TETRAHEDRON, ITS_FACES),
+    "isolated vertex": (np.vstack([TETRAHEDRON, [[5, 5, 5]]]), ITS_FACES),
+    "vertex that is nan": (np.vstack([TETRAHEDRON[:3], [[np.nan] * 3]]), ITS_FACES),
+    "face without area": (np.vstack([TETRAHEDRON, [[0.5, 0, 0]]]), np.vstack([ITS_FACES, [[0, 4, 1]]])),
+    "three faces at an edge": (np.vstack([TETRAHEDRON, [[1, 1, 1]]]), np.vstack([ITS_FACES, [[0, 1, 4]]])),
+    "the same face twice": (TETRAHEDRON, np.vstack([ITS_FACES, ITS_FACES[:1]])),
+    "a face with a vertex twice": (TETRAHEDRON, np.vstack([ITS_FACES, [[0, 0, 1]]])),
+    "a point": (0.0 * TETRAHEDRON, ITS_FACES),
+    "two components": (np.vstack([TETRAHEDRON, TETRAHEDRON + 5]), np.vstack([ITS_FACES, ITS_FACES + 4])),
+}
+
+
+@pytest.mark.parametrize(
+    "options",
+    [*({"method": m} for m in ("auto", *METHODS, "intrinsic", "robinson")), {"method": "wald", "radius": 1.0}],
+    ids=lambda x: "-".join(str(v) for v in x.values()),
+)
+@pytest.mark.parametrize("name", SMALL)
+def test_meshes_of_a_few_vertices_have_a_value_or_a_status(name, options):
+    V, F = SMALL[name]
+    c = surface_curvature((V, F), **options)
+    assert len(c.gaussian) == len(c.status) == len(V)
+    assert np.isfinite(c.gaussian[c.status == VertexStatus.OK]).all()
+    assert np.isnan(c.gaussian[np.isin(c.status, (VertexStatus.ISOLATED, VertexStatus.NONFINITE))]).all()
+
 
 def damaged():
     """Name, vertices, faces and the vertices at the damage of copies of one sphere."""

@@ -221,19 +221,25 @@ def _candidates(
     """The estimates of one scale, for all orders."""
     combinations = [combination(m, order) for order in range(1, ORDER + 1)] if m else [{0: 1.0}]
     values = [powers.combined(c) if m else np.where(flow.has_data, flow.start, np.nan) for c in combinations]
-    variances = np.column_stack([tau2 * noise.variance(c) for c in combinations])
+    variances = np.column_stack([_product(tau2, noise.variance(c)) for c in combinations])
     variances[~np.isfinite(values[0])] = np.nan
     radius = np.sqrt(np.fmax(SUPPORT * m * noise.step, flow.spacing**2))
     if not m:
         variances = np.fmax(variances, flow.means(variances, VARIANCE_PASSES))
         return [IntrinsicCurvature(values[0], variances[:, 0], np.zeros(len(radius)), radius)]
     differences = [_difference(_reference(m, order + 1), c) for order, c in enumerate(combinations)]
-    seen = np.column_stack([tau2 * noise.variance(d) for d in differences])
+    seen = np.column_stack([_product(tau2, noise.variance(d)) for d in differences])
     excess = np.column_stack([powers.combined(d) ** 2 for d in differences]) - seen
     both = np.concatenate([variances, seen], axis=1)
     variances, seen = np.split(np.fmax(both, flow.means(both, VARIANCE_PASSES)), 2, axis=1)
     biases = np.fmax(flow.means(excess, max(PASSES, m)), FLOOR * seen)
     return [IntrinsicCurvature(values[r], variances[:, r], biases[:, r], radius) for r in range(ORDER)]
+
+
+def _product(noise: Floats, variance: Floats) -> Floats:
+    """Variance for noise of the lengths; nan, so that no candidate wins, where it is 0 times infinity."""
+    with np.errstate(invalid="ignore"):
+        return noise * variance
 
 
 def _reference(m: int, order: int) -> dict[int, float]:
