@@ -7,7 +7,15 @@ f(k)); a move exchanges the images of two points.
 import numpy as np
 
 from rinow.kernels._jit import kernel
-from rinow.kernels.correspondence_tabu import CANDIDATES, MOVE, NO_CONFLICT, TOTAL_STALL, excess, random_below
+from rinow.kernels.correspondence_tabu import (
+    CANDIDATES,
+    MOVE,
+    NO_CONFLICT,
+    TOTAL_STALL,
+    excess,
+    keep_at_random,
+    random_below,
+)
 
 
 @kernel
@@ -56,12 +64,7 @@ def _conflicts(tabu, chosen):
     found = 0
     for k in range(tabu.f.shape[0]):
         if tabu.table[k, tabu.f[k]] > NO_CONFLICT:
-            if found < CANDIDATES:
-                chosen[found] = k
-            else:
-                place = random_below(tabu.random, found + 1)
-                if place < CANDIDATES:
-                    chosen[place] = k
+            keep_at_random(tabu.random, found, k, chosen)
             found += 1
     return min(found, CANDIDATES), found
 

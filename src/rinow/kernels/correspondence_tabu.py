@@ -48,6 +48,17 @@ def random_below(state, n):
 
 
 @kernel
+def keep_at_random(state, found, item, kept):
+    """Keep the next item of a sequence, of which `found` came before, so that all are kept with the same chance."""
+    if found < kept.shape[0]:
+        kept[found] = item
+    else:
+        place = random_below(state, found + 1)
+        if place < kept.shape[0]:
+            kept[place] = item
+
+
+@kernel
 def excess(a, b, t):
     """By how much two distances differ beyond t."""
     gap = abs(a - b) - t
@@ -102,12 +113,7 @@ def _conflicts(tabu, chosen):
     for p in range(n + m):
         value = tabu.table[p, tabu.f[p]] if p < n else tabu.table[tabu.g[p - n], p - n]
         if value > NO_CONFLICT:
-            if found < CANDIDATES:
-                chosen[found] = p
-            else:
-                k = random_below(tabu.random, found + 1)
-                if k < CANDIDATES:
-                    chosen[k] = p
+            keep_at_random(tabu.random, found, p, chosen)
             found += 1
     return min(found, CANDIDATES), found
 

@@ -111,6 +111,16 @@ def clear_row(u, offsets, heads, marks):
 
 
 @kernel
+def change_row(old, new, offsets, heads, lengths, marks):
+    """Mark the row `new` in place of `old`, which is -1 for none; the row that is marked now."""
+    if new != old:
+        if old >= 0:
+            clear_row(old, offsets, heads, marks)
+        mark_row(new, offsets, heads, lengths, marks)
+    return new
+
+
+@kernel
 def menger_of(a, b, c):
     """Menger curvature of a triangle; 0 if a side is as long as the others or longer, nan if one is 0."""
     product = a * b * c
@@ -160,11 +170,7 @@ def menger_curvatures(order, tails, ends, chords, unweighted, offsets, heads, di
         marks, marked = np.full(offsets.shape[0] - 1, np.inf), -1
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
             e = order[i]
-            if ends[e] != marked:
-                if marked >= 0:
-                    clear_row(marked, into_offsets, into_tails, marks)
-                marked = ends[e]
-                mark_row(marked, into_offsets, into_tails, into_distances, marks)
+            marked = change_row(marked, ends[e], into_offsets, into_tails, into_distances, marks)
             out[e] = menger_sum(tails[e], chords[e], unweighted, offsets, heads, distances, marks)
 
 
@@ -177,11 +183,7 @@ def haantjes_curvatures(order, tails, ends, own, chords, offsets, heads, lengths
         marks, marked = np.full(offsets.shape[0] - 1, np.inf), -1
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
             e = order[i]
-            if ends[e] != marked:
-                if marked >= 0:
-                    clear_row(marked, into_offsets, into_tails, marks)
-                marked = ends[e]
-                mark_row(marked, into_offsets, into_tails, into_lengths, marks)
+            marked = change_row(marked, ends[e], into_offsets, into_tails, into_lengths, marks)
             out[e] = np.nan
             if chords[e] > 0.0:
                 out[e] = haantjes_sum(tails[e], marked, own[e], chords[e], offsets, heads, lengths, marks)
