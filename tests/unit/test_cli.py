@@ -1,5 +1,6 @@
 """The command line: outputs, exit codes, and one sentence for every kind of bad input."""
 
+import io
 import json
 import os
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 import rinow
+import shapes
 from rinow.cli.main import main
 
 V = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
@@ -40,6 +42,28 @@ def test_demo_writes_a_mesh_and_a_picture(folder, capsys):
     assert "gaussian" in out.out
     assert "1/length²" in out.out
     assert out.err == ""
+
+
+def test_curvature_at_the_quality_asked_for(folder, capsys):
+    torus = shapes.irregular_torus(3000)
+    rinow.write_mesh("torus.ply", rinow.TriangleMesh(torus.vertices, torus.faces))
+    assert main(["curvature", "torus.ply", "-o", "out.npz", "--quality", "fast"]) == 0
+    expected = rinow.surface_curvature(rinow.read_mesh("torus.ply"), quality="fast")
+    np.testing.assert_array_equal(rinow.read_mesh("out.npz").vertex_data["gaussian"], expected.gaussian)
+
+
+def test_progress_is_shown_to_a_terminal_only(folder, capsys, monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    watched = Terminal()
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr("sys.stderr", watched)
+    assert main(["curvature", "in.ply"]) == 0
+    assert "curvature of 4 vertices" in watched.getvalue()
+    assert "100%" in watched.getvalue()
+    assert "curvature of 4 vertices" not in capsys.readouterr().out
 
 
 def test_curvature_writes_every_output_in_order(folder, capsys):

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Generator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
 from rich.console import Console
+from rich.progress import BarColumn, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bar
 from rich.table import Table
 
 from rinow.study.surface import SurfaceStudy, field_unit
@@ -17,14 +19,26 @@ from rinow.study.surface import SurfaceStudy, field_unit
 __all__ = ["console", "print_counts", "print_json", "print_notes", "print_study", "working"]
 
 
+Progress = Callable[[int, int], object]
+
+
 @contextmanager
-def working(task: str) -> Generator[None]:
-    """Show a spinner with the name of the task on a terminal; nothing in a pipe or a log."""
+def working(task: str) -> Generator[Progress]:
+    """Show the name of the task on a terminal; nothing in a pipe or a log.
+
+    Yields a function of how much is done and the total, for tasks that know; the bar runs along for the others.
+    """
     if not sys.stderr.isatty():
-        yield
+        yield _unseen
         return
-    with Console(stderr=True).status(task):
-        yield
+    columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn()
+    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+        line = bar.add_task(task, total=None)
+        yield lambda done, total: bar.update(line, completed=done, total=total)
+
+
+def _unseen(done: int, total: int) -> None:
+    """Progress that nobody watches."""
 
 
 def print_json(record: Mapping[str, Any]) -> None:

@@ -17,6 +17,7 @@ __all__ = ["curvature", "write_picture"]
 
 Field = Literal["gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "spread"]
 Method = Literal["auto", "sectional", "lifted", "intrinsic", "wald", "robinson", "angle_defect"]
+Quality = Literal["best", "fast"]
 
 
 def curvature(
@@ -25,6 +26,7 @@ def curvature(
     *,
     output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"])] = (),
     method: Method = "auto",
+    quality: Quality = "best",
     radius: float | None = None,
     field: Field = "gaussian",
     picture: Path | None = None,
@@ -44,6 +46,8 @@ def curvature(
         File to write the mesh and its curvature to; may be repeated.  PLY, VTP, NPZ and GIFTI carry fields.
     method
         How to compute the curvature.
+    quality
+        fast is several times faster and less accurate; for the methods auto and sectional.
     radius
         Scale in the unit of length of the file; by default each method chooses its own.
     field
@@ -60,8 +64,8 @@ def curvature(
     check_outputs([*output, *([picture] if picture else [])], inputs=[mesh], pictures=[picture] if picture else [])
     with working(f"reading {mesh.name}"):
         surface = read_mesh(mesh)
-    with working(f"curvature of {surface.n_vertices:,} vertices"):
-        study = study_surface(surface, method=method, radius=radius, unit=unit)
+    with working(f"curvature of {surface.n_vertices:,} vertices") as progress:
+        study = study_surface(surface, method=method, quality=quality, radius=radius, unit=unit, progress=progress)
     notes: list[str] = []
     if not np.isfinite(study.fields(field)[field]).any():
         notes.append(f"{field} is undefined at every vertex: method {method} gives none on this mesh.")

@@ -134,6 +134,7 @@ def study_surface(
     mesh: TriangleMesh,
     *,
     method: str = "auto",
+    quality: str = "best",
     radius: float | None = None,
     unit: str = "length",
     progress: Any = None,
@@ -144,7 +145,7 @@ def study_surface(
     ----------
     mesh : TriangleMesh
         The surface.
-    method, radius, progress
+    method, quality, radius, progress
         As for `rinow.surface_curvature`.
     unit : str, optional
         Name of the unit of length of the positions.
@@ -155,5 +156,5 @@ def study_surface(
         The curvature and what is needed to read it.
     """
     start = time.perf_counter()
-    curvature = surface_curvature(mesh, method=method, radius=radius, progress=progress)
+    curvature = surface_curvature(mesh, method=method, quality=quality, radius=radius, progress=progress)
     return SurfaceStudy(mesh, curvature, unit, {"curvature": time.perf_counter() - start})
