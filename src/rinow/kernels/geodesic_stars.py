@@ -27,7 +27,7 @@ FEWEST, WIDEST = 5, 0.45
 @kernel
 def turned(angle, full):
     """An angle reduced to [-full/2, full/2)."""
-    return angle - full * math.floor(angle / full + 0.5)
+    return angle - full * np.floor(angle / full + 0.5)
 
 
 @kernel
