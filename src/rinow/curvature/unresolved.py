@@ -54,6 +54,7 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     star = _two_rings(mesh)
     share = _detail_share(mesh, (star.mean - estimate.mean) * estimate.spacing, OF_FITS)  # type: ignore[operator]
     share[~(is_noisy & np.isfinite(star.gaussian) & np.isfinite(estimate.gaussian))] = 0.0
+    share[mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
     if not share.any():
         return estimate
     return _blend(estimate, _with_one_ring(mesh, star, estimate.spacing), share)
