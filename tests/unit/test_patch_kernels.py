@@ -106,6 +106,44 @@ def test_an_order_needs_more_points_than_unknowns():
     assert nested_fits.highest_order(57, 4) == 4
 
 
+def second_derivatives(order, reach, u, v):
+    """(3, n_terms): f11, f12, f22 at a point for each coefficient of a polynomial in coordinates over the reach."""
+    units = np.eye(nested_fits.TERMS[order])
+    return np.array([patches.polynomial(c, order, reach, u, v)[3:] for c in units]).T
+
+
+def fit_of(u, v, order, reach):
+    points = np.stack([u, v, np.zeros_like(u), u * u + v * v])
+    work = nested_fits.fits(1)
+    nested_fits.add_moments(points, len(u), np.array([reach]), order, work)
+    assert nested_fits.fit_orders(0, reach, order, work) == order
+    return work, np.array(naive_tori.polynomial_columns(points[:3].T.tolist(), order, reach)).reshape(-1, len(u)).T
+
+
+@pytest.mark.parametrize("order", [2, 5, 7])
+def test_variance_beside_the_centre_is_that_of_least_squares(order):
+    u, v = np.random.default_rng(33).uniform(-2, 2, (2, 60))
+    work, columns = fit_of(u, v, order, 3.0)
+    covariance = np.linalg.inv(columns.T @ columns)
+    for place in ((0.0, 0.0), (1.0, -0.4)):
+        g = second_derivatives(order, 3.0, *place)
+        found = nested_fits.bend_variance(*place, 3.0, order, work, np.empty((3, 45)))
+        assert found == pytest.approx(np.trace(g @ covariance @ g.T), rel=1e-6)
+    c = work.covariances[order]
+    assert nested_fits.bend_variance(0.0, 0.0, 3.0, order, work, np.empty((3, 45))) == pytest.approx(c[0] + c[3] + c[5])
+
+
+def test_points_in_rows_fix_a_polynomial_at_the_centre_and_not_beside_it():
+    # Rows of a lattice, as marching cubes leave them: a polynomial that is small on all of them bends between.
+    x, y = (g.ravel() for g in np.meshgrid(np.arange(-4, 5.0), np.arange(-4, 5.0)))
+    near = x * x + y * y < 3.9**2
+    u, v = np.stack([x[near], y[near]]) + 0.05 * np.random.default_rng(34).normal(size=(2, near.sum()))
+    assert len(u) < patches.ROOMY * nested_fits.TERMS[7]
+    work, _ = fit_of(u, v, 7, 3.9)
+    at_centre, beside = (nested_fits.bend_variance(s, 0.0, 3.9, 7, work, np.empty((3, 45))) for s in (0.0, 1.0))
+    assert beside > patches.LOOSE * at_centre
+
+
 def test_polynomial_has_its_derivatives():
     rng = np.random.default_rng(33)
     c, reach, h = rng.normal(size=45), 2.0, 1e-5

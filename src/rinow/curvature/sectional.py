@@ -128,8 +128,10 @@ def sectional(
     spread[mesh.topology.vertex_is_boundary] *= EDGE_CALIBRATION
     estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
     estimate.put(on_edge, ends)
+    _doubt_ends(mesh, estimate)
     if radius is None:
         _fill_in(mesh, estimate)
+        _doubt_ends(mesh, estimate)
     _flatten(estimate, _flat_vertices(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
@@ -235,6 +237,19 @@ def _spread_out(values: Floats, index: NDArray[np.intp], n: int) -> Floats:
     out = np.full((n, *values.shape[1:]), np.nan)
     out[index] = values
     return out
+
+
+def _doubt_ends(mesh: TriangleMesh, estimate: Estimate) -> None:
+    """Undefine curvatures at the boundary that no edge there can have: a chord is at most the diameter of its circle.
+
+    The few points on one side of a short boundary may lie almost on a line, and show any curvature then.
+    """
+    t, shortest = mesh.topology, np.full(mesh.n_vertices, np.inf)
+    lengths = np.linalg.norm(np.subtract(*mesh.vertices[t.edges.T]), axis=1)
+    np.minimum.at(shortest, t.edges.ravel(), np.repeat(lengths, 2))
+    at_ends = np.flatnonzero(t.vertex_is_boundary & np.isfinite(estimate.gaussian))
+    largest = np.maximum(np.abs(estimate.k1[at_ends]), np.abs(estimate.k2[at_ends]))  # type: ignore[index]
+    estimate.gaussian[at_ends[largest * shortest[at_ends] > 2.0]] = np.nan
 
 
 def _fill_in(mesh: TriangleMesh, estimate: Estimate) -> None:

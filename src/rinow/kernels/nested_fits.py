@@ -169,6 +169,23 @@ def fit_orders(shell, reach, order, work):
 
 
 @inner
+def bend_variance(u, v, reach, order, work, z):
+    """Sum of the variances of the second derivatives of a fit at (u, v), for noise of variance 1; z is (3, 45)."""
+    x, y, total, factor = u / reach, v / reach, 0.0, work.factor
+    for k in range(TERMS[order]):
+        a, b = U_POWERS[k], V_POWERS[k]
+        z[0, k] = a * (a - 1) * x ** max(a - 2, 0) * y**b
+        z[1, k] = a * b * x ** max(a - 1, 0) * y ** max(b - 1, 0)
+        z[2, k] = b * (b - 1) * x**a * y ** max(b - 2, 0)
+        for c in range(3):
+            for i in range(k):
+                z[c, k] -= factor[i, k] * z[c, i]
+            z[c, k] *= factor[k, k]
+            total += z[c, k] * z[c, k]
+    return total / reach**4
+
+
+@inner
 def coefficients(order, top, work, out):
     """Write the coefficients, in coordinates over the reach, of an order of the factorisation made for `top`."""
     p, n, factor = TERMS[top], TERMS[order], work.factor

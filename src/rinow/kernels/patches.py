@@ -17,6 +17,8 @@ SHARP = 2.0
 """Curvature, over the inverse spacing, that no mesh resolves: beyond it a fit has failed."""
 FALLEN = 1e-6
 """Weight of a fit whose order had to be lowered."""
+ROOMY, LOOSE = 2.0, 10.0
+"""Points over unknowns below which a fit may be loose beside its centre: more than so many times the variance there."""
 SYMMETRIC = 1.5
 """Largest ratio of variances of stencils that count as symmetric."""
 N_VALUES = 15
@@ -166,9 +168,11 @@ def chosen_order(wanted, top, fit):
 
 
 @inner
-def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values):
+def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, fit, sheet, ball, vertices, values):
     """Write the weighted values of one patch at the vertices nearer than patch.core spacings to its centre."""
     k, centre, points = start, ball.members[0], ball.points
+    c, room = fit.covariances[order], np.empty((3, TERMS[MAX_ORDER]))
+    at_centre, is_crowded = c[0] + c[3] + c[5], size < ROOMY * TERMS[order]
     spacing, core = sheet.spacing[centre], patch.core
     for j in range(size):
         u, v, q = points[0, j], points[1, j], ball.members[j]
@@ -179,12 +183,16 @@ def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch
         if not write_values(u, v, polynomial(coefficients, order, reach, u, v), frame, spacing, out):
             continue
         weight = (1.0 - s) ** 2 * patch.risk ** (-patch.power) * (1.0 if order >= patch.order else FALLEN)
+        gain = nested_fits.bend_variance(u, v, reach, order, fit, room) / at_centre if is_crowded else 1.0
+        risk = patch.risk * max(gain, 1.0)
+        if gain > LOOSE:
+            weight *= FALLEN
         sign = 1.0
         if not sheet.is_oriented:
             dot = out[11] * sheet.normals[q, 0] + out[12] * sheet.normals[q, 1] + out[13] * sheet.normals[q, 2]
             sign = 1.0 if dot >= 0.0 else -1.0
         out[1] -= bias
-        out[3], out[4], out[14] = patch.risk, reach * spacing, order
+        out[3], out[4], out[14] = risk, reach * spacing, order
         out[0] = weight
         for m in range(1, N_VALUES):
             out[m] *= weight * (sign if m == 2 or 5 <= m < 14 else 1.0)
@@ -201,7 +209,7 @@ def write_patch(start, stop, size, top, asked, reach, frame, patch, fit, sheet, 
     factor = curvature_and_gradients(fit.jets[order], frame[9] * spacing, frame[10] * spacing)[4]
     c = fit.covariances[order]
     bias = patch.noise / spacing**4 * factor * (c[2] - c[3])  # the mean of f11 f22 - f12^2 over the noise
-    write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values)
+    write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, fit, sheet, ball, vertices, values)
 
 
 @kernel
