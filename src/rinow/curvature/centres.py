@@ -17,8 +17,8 @@ CORE = 1.4
 """Radius of the part of a patch that is used, over the radius within which the centre is the only one."""
 
 
-def cover(sheet: balls.Sheet, radii: Floats) -> tuple[Ints, Ints]:
-    """Vertices within whose radii all vertices lie, and the sizes of their discs of `CORE` radii.
+def cover(sheet: balls.Sheet, radii: Floats, core: float = CORE) -> tuple[Ints, Ints]:
+    """Vertices within whose radii all vertices lie, and the sizes of their discs of `core` radii.
 
     Parameters
     ----------
@@ -26,6 +26,8 @@ def cover(sheet: balls.Sheet, radii: Floats) -> tuple[Ints, Ints]:
         The surface.
     radii : (n,) ndarray of float
         Radius a vertex covers, in spacings.
+    core : float, optional
+        At least 1.
 
     Notes
     -----
@@ -37,7 +39,7 @@ def cover(sheet: balls.Sheet, radii: Floats) -> tuple[Ints, Ints]:
     covers.shape_keys(sheet.vertices, sheet.offsets, sheet.neighbours, keys)
     candidates = np.argsort(keys, kind="stable").astype(np.int32)
     centres, sizes = np.empty(len(radii), np.int32), np.empty(len(radii), np.int32)
-    count = covers.cover(candidates, radii * sheet.spacing, CORE, sheet, centres, sizes)
+    count = covers.cover(candidates, radii * sheet.spacing, core, sheet, centres, sizes)
     order = np.argsort(centres[:count])
     return centres[order], sizes[order]
 

@@ -111,22 +111,34 @@ def windows(starts, samples, radius, order, noise, low, high, top, sigma2):
         sigma2[v] = math.exp(total / count) if count else 0.0
 
 
+@inner
+def sum_logs(rows, logs, totals, counts):
+    """Write the sums of those rows of logs (m, k) that have a value in a column, and how many there are."""
+    totals[:], counts[:] = 0.0, 0.0
+    for row in rows:
+        log = logs[row]
+        for c in range(len(totals)):
+            is_known = not math.isnan(log[c])
+            totals[c] += log[c] if is_known else 0.0
+            counts[c] += 1.0 if is_known else 0.0
+
+
 @parallel_kernel
-def choices(vertices, starts, samples, logs, radius, order, risk):
-    """Write the radius and order of the least mean logarithmic risk among the samples near each vertex; -1 without."""
-    for i in prange(len(vertices)):
-        v = vertices[i]
-        best = np.inf
-        radius[i], order[i], risk[i] = -1, 0, np.inf
-        for j in range(logs.shape[1]):
-            for d in range(logs.shape[2]):
-                total, count = 0.0, 0
-                for k in range(starts[v], starts[v + 1]):
-                    x = logs[samples[k], j, d]
-                    if not math.isnan(x):
-                        total += x
-                        count += 1
-                missing = starts[v + 1] - starts[v] - count
-                if count > missing and total / count + missing < best:
-                    best = total / count + missing
-                    radius[i], order[i], risk[i] = j, d + 2, math.exp(total / count)
+def choices(vertices, starts, samples, logs, n_orders, n_blocks, radius, order, risk):
+    """Write the radius and order of the least mean logarithmic risk among the samples near each vertex; -1 without.
+
+    Column j n_orders + d of the logs belongs to the radius j and the order d + 2.
+    """
+    n = len(vertices)
+    for block in prange(n_blocks):
+        totals, counts = np.empty(logs.shape[1]), np.empty(logs.shape[1])
+        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            near = samples[starts[vertices[i]] : starts[vertices[i] + 1]]
+            sum_logs(near, logs, totals, counts)
+            best = np.inf
+            radius[i], order[i], risk[i] = -1, 0, np.inf
+            for c in range(logs.shape[1]):
+                missing, mean = len(near) - counts[c], totals[c] / max(counts[c], 1.0)
+                if counts[c] > missing and mean + missing < best:
+                    best = mean + missing
+                    radius[i], order[i], risk[i] = c // n_orders, c % n_orders + 2, math.exp(mean)
