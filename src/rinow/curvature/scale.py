@@ -162,7 +162,7 @@ def windows(samples: Samples) -> tuple[Ints, Ints, Ints, Floats]:
 def chosen_at(vertices: Ints, samples: Samples, logs: Floats) -> Choice:
     """The least mean logarithmic risk among the samples near each vertex."""
     choice = _empty_choice(len(vertices))
-    table = logs.reshape(len(logs), -1)
+    table = logs.reshape(len(logs), logs.shape[1] * logs.shape[2])
     covers.choices(vertices, samples.starts, samples.near, table, N_ORDERS, N_BLOCKS, *choice)
     return choice
 
