@@ -35,20 +35,23 @@ def shape_keys(vertices, offsets, neighbours, out):
 
 @inner
 def disc(v, radius, epoch, sheet, marks, members):
-    """Write the vertices within a distance of v, reached over such vertices; how many."""
+    """Write the vertices within a distance of v, reached over such vertices, to members (n + 1,); how many.
+
+    Which neighbours are new is as good as random: no branch depends on it.
+    """
     vertices, offsets, neighbours = sheet.vertices, sheet.offsets, sheet.neighbours
     members[0] = v
     marks[v] = epoch
-    done, n = 0, 1
+    far, done, n = radius * radius, 0, 1
     while done < n:
         p = members[done]
         for i in range(offsets[p], offsets[p + 1]):
             q = neighbours[i]
-            if marks[q] != epoch:
-                marks[q] = epoch
-                if stencils.squared_distance(vertices, v, q) < radius * radius:
-                    members[n] = q
-                    n += 1
+            mark = marks[q]
+            is_new = (mark != epoch) & (stencils.squared_distance(vertices, v, q) < far)
+            marks[q] = epoch if is_new else mark
+            members[n] = q
+            n += is_new
         done += 1
     return n
 
@@ -57,7 +60,7 @@ def disc(v, radius, epoch, sheet, marks, members):
 def cover(candidates, radii, core, sheet, centres, sizes):
     """Write each candidate that lies in the disc of no earlier one, and the size of `core` times its disc; how many."""
     n = len(sheet.vertices)
-    marks, members, is_covered = np.zeros(n, np.int32), np.empty(n, np.int32), np.zeros(n, np.bool_)
+    marks, members, is_covered = np.zeros(n, np.int32), np.empty(n + 1, np.int32), np.zeros(n, np.bool_)
     count = 0
     for v in candidates:
         if is_covered[v]:
@@ -80,7 +83,7 @@ def link(places, sources, radii, counts, starts, is_counting, n_blocks, sheet, l
     """
     n, size = len(sources), len(sheet.vertices)
     for block in prange(n_blocks):
-        marks, members = np.zeros(size, np.int32), np.empty(size, np.int32)
+        marks, members = np.zeros(size, np.int32), np.empty(size + 1, np.int32)
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
             m = disc(sources[i], radii[i], i + 1, sheet, marks, members)
             k = 0
