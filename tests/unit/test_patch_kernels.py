@@ -12,7 +12,7 @@ from rinow import TriangleMesh
 from rinow.curvature.centres import cover, flat_frames, members_of_discs
 from rinow.curvature.sheet import patch_sheet
 from rinow.kernels import balls, nested_fits, patches
-from rinow.kernels.osculating_torus import offset_forms, torus_coordinates, torus_frame
+from rinow.kernels.osculating_torus import arc_place, offset_forms, torus_coordinates, torus_frame
 
 TORUS = shapes.noisy(shapes.irregular_torus(600), 0.02)
 SHEET, INDEX = patch_sheet(TriangleMesh(TORUS.vertices, TORUS.faces))
@@ -45,7 +45,7 @@ def test_curvatures_of_an_offset_from_a_torus(k1, k2):
     jet = (
         f(u1, u2), 0.2 + 0.6 * u1 + 0.2 * u2 + 0.3 * u1**2, -0.1 + 0.2 * u1 - 0.5 * u2, 0.6 + 0.6 * u1, 0.2, -0.5
     )  # fmt: skip
-    g11, g12, g22, l, m, n, volume = offset_forms(u2, k1, k2, *jet)
+    g11, g12, g22, l, m, n, volume = offset_forms(arc_place(u2, k2), k1, k2, *jet)
     assert volume == pytest.approx(math.sqrt(g11 * g22 - g12 * g12), rel=1e-13)
     K, H = naive_tori.offset_curvatures(f, u1, u2, k1, k2)
     # Differences of second order of numbers of size 1 with steps of 1e-3: 1e-16 / 1e-6.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.sheet import sorted_by
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers
 
@@ -17,8 +18,8 @@ CORE = 1.4
 """Radius of the part of a patch that is used, over the radius within which the centre is the only one."""
 
 
-def cover(sheet: balls.Sheet, radii: Floats) -> tuple[Ints, Ints]:
-    """Vertices within whose radii all vertices lie, and the sizes of their discs of `CORE` radii.
+def cover(sheet: balls.Sheet, radii: Floats, core: float = CORE) -> tuple[Ints, Ints]:
+    """Vertices within whose radii all vertices lie, and the sizes of their discs of `core` radii.
 
     Parameters
     ----------
@@ -26,6 +27,8 @@ def cover(sheet: balls.Sheet, radii: Floats) -> tuple[Ints, Ints]:
         The surface.
     radii : (n,) ndarray of float
         Radius a vertex covers, in spacings.
+    core : float, optional
+        At least 1.
 
     Notes
     -----
@@ -35,9 +38,8 @@ def cover(sheet: balls.Sheet, radii: Floats) -> tuple[Ints, Ints]:
     """
     keys = np.empty(len(radii), np.uint32)
     covers.shape_keys(sheet.vertices, sheet.offsets, sheet.neighbours, keys)
-    candidates = np.argsort(keys, kind="stable").astype(np.int32)
     centres, sizes = np.empty(len(radii), np.int32), np.empty(len(radii), np.int32)
-    count = covers.cover(candidates, radii * sheet.spacing, CORE, sheet, centres, sizes)
+    count = covers.cover(sorted_by(keys), radii * sheet.spacing, core, sheet, centres, sizes)
     order = np.argsort(centres[:count])
     return centres[order], sizes[order]
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.centres import cover, flat_frames, members_of_discs
 from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
+from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 
@@ -97,7 +98,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -
 
     n = len(sheet.vertices)
     radius = next(fine if is_refined else coarse for size, fine, coarse in SAMPLE_SPACINGS if n <= size)
-    centres, _ = cover(sheet, np.full(n, radius))
+    centres, _ = cover(sheet, np.full(n, radius), 1.0)
     m = len(centres)
     links = members_of_discs(sheet, centres, centres, np.full(m, AROUND * radius))
     n_plane = min(PILOT_RADII, len(ladder.reaches))
@@ -161,7 +162,8 @@ def windows(samples: Samples) -> tuple[Ints, Ints, Ints, Floats]:
 def chosen_at(vertices: Ints, samples: Samples, logs: Floats) -> Choice:
     """The least mean logarithmic risk among the samples near each vertex."""
     choice = _empty_choice(len(vertices))
-    covers.choices(vertices, samples.starts, samples.near, logs, *choice)
+    table = logs.reshape(len(logs), logs.shape[1] * logs.shape[2])
+    covers.choices(vertices, samples.starts, samples.near, table, N_ORDERS, N_BLOCKS, *choice)
     return choice
 
 
