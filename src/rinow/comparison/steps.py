@@ -12,6 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, RELATION, Engine, Search
 from rinow.comparison.interval import Interval
+from rinow.comparison.level_search import LevelSearch
 from rinow.comparison.satisfiability import Satisfiability, solver_installed
 from rinow.comparison.symmetry import Isometries, isometries
 from rinow.comparison.warm_start import BijectionTabu, RelationTabu, TabuSearch
@@ -137,17 +138,13 @@ def climb(engine: Engine, interval: Interval, clock: Clock, symmetries: Symmetri
         if level >= interval.upper or level <= last:  # the error of isometries may hide the next level
             return
         last = level
-        possible = engine.consistent(level, clock)
-        if possible is None:
+        search = LevelSearch(engine, level, symmetries)
+        if not search.consistent:
             interval.refuted(level, engine, "arc consistency")
             continue
-        if not engine.fits(possible):
-            return
-        search = Search(engine, possible, level, clock, (symmetries[0].images, symmetries[1].images))
         exhausted, pairs = search.run(clock)
         if exhausted:
-            error = symmetries[0].error + symmetries[1].error
-            interval.refuted(level, engine, "search", error * search.depth_of_proof)
+            interval.refuted(level, engine, "search", search.error)
         elif pairs is None:
             return
         else:
