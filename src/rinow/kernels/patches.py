@@ -165,7 +165,7 @@ def chosen_order(wanted, top, fit):
 def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, fit, sheet, ball, vertices, values):
     """Write the weighted values of one patch at the vertices nearer than patch.core spacings to its centre."""
     k, centre, points = start, ball.members[0], ball.points
-    c, room = fit.covariances[order], np.empty((3, TERMS[MAX_ORDER]))
+    c, room = fit.covariances[order], np.empty((3, TERMS[-1]))
     at_centre, is_crowded = c[0] + c[3] + c[5], size < ROOMY * TERMS[order]
     spacing, core = sheet.spacing[centre], patch.core
     most = patch.risk ** (-patch.power) * (1.0 if order >= patch.order else FALLEN)
