@@ -53,7 +53,7 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
     symmetries = isometries(engine.DX, listing), isometries(engine.DY, listing)
     if engine.kind == BIJECTION:
         symmetries = symmetries[0].exact(), symmetries[1].exact()
-    homogeneous = not (symmetries[0].trivial and symmetries[1].trivial)
+    homogeneous = any(symmetric.transitive for symmetric in symmetries)
     share, climbing = (0.05, 0.05) if homogeneous else (0.2, CLIMB)
     if engine.kind == RELATION and engine.levels.few:
         climb(engine, interval, clock.part(climbing * clock.left), symmetries)
@@ -70,7 +70,8 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
 def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: float = 0.0) -> None:
     """Tabu search from several starts: the rows that agree best and the best relation so far, then random maps.
 
-    Nearly isometric spaces are done after the first: arc consistency refutes what is below.
+    Nearly isometric spaces are done after the first: arc consistency refutes what is below.  Where levels are few they
+    are met one by one afterwards.
     """
     rng = np.random.default_rng(20)
     for k, search in enumerate(_searches(engine, rng, interval)):
@@ -78,7 +79,7 @@ def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: floa
         interval.offer(search.pairs, search.best)
         if interval.upper <= target:
             return
-        if k == 0 and not interval.closed:
+        if k == 0 and not interval.closed and not engine.levels.few:
             level = interval.wanted
             if engine.consistent(level, clock.part(PROOF * clock.left)) is None:
                 interval.refuted(level, engine, "arc consistency")
