@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
 from rinow.curvature.angle_defect import longest_edges
-from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs
+from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, sizes_of_discs
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
@@ -142,7 +142,7 @@ def blended_patches(
     """K, H, risk, radius and order at the vertices of the sheet, principal directions, and variance of the noise."""
     low, high, top, noise = windows(samples)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
-    centres, sizes = cover(sheet, core)
+    centres = cover(sheet, core)
     plane, choice = (chosen_at(centres, samples, logs) for logs in (samples.plane_logs, samples.torus_logs))
     beside = at_edge[centres]
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
@@ -154,7 +154,7 @@ def blended_patches(
         links = _like(members_of_discs(sheet, centres, centres, AROUND * core), beside)
         choice = select(sheet, ladder, centres, frames, (*window, at_centres), links, PASSES, tasks)
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
-    np.cumsum(sizes, out=rows[1:])
+    np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES))
     fitting = ladder.fitting(
         patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
