@@ -143,16 +143,20 @@ def blended_patches(
     low, high, top, noise = windows(samples)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, core)
-    plane, choice = (chosen_at(centres, samples, logs) for logs in (samples.plane_logs, samples.torus_logs))
     beside = at_edge[centres]
+    plane, choice = (chosen_at(centres, samples, logs) for logs in (samples.plane_logs, samples.torus_logs))
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
+    window = _widened(low[centres], high[centres] + np.where(beside, EDGE_RADII, 0), top[centres], len(ladder.reaches))
     core, at_centres = core[centres], noise[centres]
-    if quality.selects:
-        frames = ladder.frames(sheet, centres, frames, _safe(choice, beside, ladder), tasks)
-        high = high + np.where(at_edge, EDGE_RADII, 0)
-        window = _widened(low[centres], high[centres], top[centres], len(ladder.reaches))
-        links = _like(members_of_discs(sheet, centres, centres, AROUND * core), beside)
-        choice = select(sheet, ladder, centres, frames, (*window, at_centres), links, PASSES, tasks)
+    own = slice(None) if quality.selects else np.flatnonzero(beside)
+    if quality.selects or len(centres[own]):
+        guess = _safe(Choice(*(x[own] for x in choice)), beside[own], ladder)
+        frames[own] = ladder.frames(sheet, centres[own], frames[own], guess, tasks)
+        links = _like(members_of_discs(sheet, centres[own], centres[own], AROUND * core[own]), beside[own])
+        window = tuple(x[own] for x in (*window, at_centres))
+        found = select(sheet, ladder, centres[own], frames[own], window, links, PASSES, tasks)
+        for whole, part in zip(choice, found, strict=True):
+            whole[own] = part
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES))
