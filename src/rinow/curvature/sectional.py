@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,9 +46,10 @@ class Quality(NamedTuple):
     """How densely patches lie.
 
     A patch covers `share` times the least radius near it, at least `least` spacings.  With `selects` each chooses its
-    order and radius, else the samples near it do.  Patches are weighted by their risk to the power `-power`.  The
-    standard error is `calibration` times the root of the least risk: the noise is the least of many estimates, the fit
-    the one that looks best, and where samples choose, its bias is that of other places.
+    order and radius, else the samples near it do, except beside a boundary, where those of the interior are too bold.
+    Patches are weighted by their risk to the power `-power`.  The standard error is `calibration` times the root of the
+    least risk: the noise is the least of many estimates, the fit the one that looks best, and where samples choose, its
+    bias is that of other places.
     """
 
     share: float
@@ -143,20 +144,18 @@ def blended_patches(
     low, high, top, noise = windows(samples)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, core)
-    beside = at_edge[centres]
+    core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
     plane, choice = (chosen_at(centres, samples, logs) for logs in (samples.plane_logs, samples.torus_logs))
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
     window = _widened(low[centres], high[centres] + np.where(beside, EDGE_RADII, 0), top[centres], len(ladder.reaches))
-    core, at_centres = core[centres], noise[centres]
-    own = slice(None) if quality.selects else np.flatnonzero(beside)
-    if quality.selects or len(centres[own]):
-        guess = _safe(Choice(*(x[own] for x in choice)), beside[own], ladder)
+    if quality.selects or beside.any():
+        own: Any = slice(None) if quality.selects else np.flatnonzero(beside)
+        guess = _safe(Choice(choice.radius[own], choice.order[own], choice.risk[own]), beside[own], ladder)
         frames[own] = ladder.frames(sheet, centres[own], frames[own], guess, tasks)
         links = _like(members_of_discs(sheet, centres[own], centres[own], AROUND * core[own]), beside[own])
-        window = tuple(x[own] for x in (*window, at_centres))
-        found = select(sheet, ladder, centres[own], frames[own], window, links, PASSES, tasks)
-        for whole, part in zip(choice, found, strict=True):
-            whole[own] = part
+        own_window = window[0][own], window[1][own], window[2][own], at_centres[own]
+        found = select(sheet, ladder, centres[own], frames[own], own_window, links, PASSES, tasks)
+        choice.radius[own], choice.order[own], choice.risk[own] = found
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES))
