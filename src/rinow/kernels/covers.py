@@ -57,27 +57,23 @@ def disc(v, radius, epoch, sheet, marks, members):
 
 
 @kernel
-def cover(candidates, radii, core, sheet, centres, sizes):
-    """Write each candidate that lies in the disc of no earlier one, and the size of `core` times its disc; how many."""
+def cover(candidates, radii, sheet, centres):
+    """Write each candidate that lies in the disc of no earlier one; how many."""
     n = len(sheet.vertices)
     marks, members, is_covered = np.zeros(n, np.int32), np.empty(n + 1, np.int32), np.zeros(n, np.bool_)
     count = 0
     for v in candidates:
-        if is_covered[v]:
-            continue
-        size = disc(v, core * radii[v], count + 1, sheet, marks, members)
-        far = radii[v] * radii[v]
-        for i in range(size):
-            if stencils.squared_distance(sheet.vertices, v, members[i]) < far:
+        if not is_covered[v]:
+            centres[count] = v
+            count += 1
+            for i in range(disc(v, radii[v], count, sheet, marks, members)):
                 is_covered[members[i]] = True
-        centres[count], sizes[count] = v, size
-        count += 1
     return count
 
 
 @parallel_kernel
-def link(places, sources, radii, counts, starts, is_counting, n_blocks, sheet, links):
-    """Numbers of the targets in the disc of each source: their counts, or from starts[i] on their numbers in `links`.
+def link(places, sources, radii, starts, n_blocks, sheet, counts, links):
+    """Write the number of targets in the disc of each source, and their numbers to links[starts[i] : starts[i + 1]].
 
     places[v] is the number of the target at vertex v, or -1.
     """
@@ -85,16 +81,14 @@ def link(places, sources, radii, counts, starts, is_counting, n_blocks, sheet, l
     for block in prange(n_blocks):
         marks, members = np.zeros(size, np.int32), np.empty(size + 1, np.int32)
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            m = disc(sources[i], radii[i], i + 1, sheet, marks, members)
-            k = 0
+            m, k, room = disc(sources[i], radii[i], i + 1, sheet, marks, members), 0, starts[i + 1] - starts[i]
             for j in range(m):
                 target = places[members[j]]
                 if target >= 0:
-                    if not is_counting:
+                    if k < room:
                         links[starts[i] + k] = target
                     k += 1
-            if is_counting:
-                counts[i] = k
+            counts[i] = k
 
 
 @parallel_kernel
