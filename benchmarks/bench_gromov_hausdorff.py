@@ -1,10 +1,11 @@
 """Gromov-Hausdorff and Lipschitz distance: what is exact, what stays open, and how long it takes.
 
-    python benchmarks/bench_gromov_hausdorff.py [group ...] [--seeds N] [--seconds S]
+    python benchmarks/bench_gromov_hausdorff.py [group ...] [--seeds N] [--seconds S] [--page]
 
 Prints instance, lower and upper bound, whether they are equal, what proved the lower one, and seconds.  Groups:
-plane, space, hops, noisy, lipschitz, circle, continuous, intervals, meshes; by default all of them.  The
-correspondence of every result is measured again.
+plane, space, hops100, hops200, noisy, lipschitz, circle, continuous, intervals, meshes; by default all of them.  The
+correspondence of every result is measured again.  With `--page` the results replace those of the same groups in
+`benchmarks/distances/results.json`, and docs/reference/benchmark-distances.md is written from all of them.
 """
 
 from __future__ import annotations
@@ -13,11 +14,14 @@ import argparse
 import itertools
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import networkx as nx
 import numpy as np
+from distances.report import write_page
 from scipy.sparse.csgraph import shortest_path
 
 import rinow
@@ -95,11 +99,10 @@ def space(seed: int) -> Iterator[Instance]:
         yield f"R3 n={n}", cloud(rng, n, 3), cloud(rng, n, 3)
 
 
-def hop_metrics(seed: int) -> Iterator[Instance]:
+def hop_metrics(seed: int, n: int) -> Iterator[Instance]:
     """Random graphs of several kinds."""
-    for n in (100, 200):
-        for name, make in GRAPHS.items():
-            yield f"{name} n={n}", hops(make(n, seed)), hops(make(n, seed + 100))
+    for name, make in GRAPHS.items():
+        yield f"{name} n={n}", hops(make(n, seed)), hops(make(n, seed + 100))
 
 
 def noisy_copies(seed: int) -> Iterator[Instance]:
@@ -164,23 +167,25 @@ def meshes(seed: int) -> Iterator[Instance]:
     yield "torus / sphere", (scale * np.array(torus.vertices), np.array(torus.faces)), icosphere(4)
 
 
-GROUPS = {
-    "plane": plane,
-    "space": space,
-    "hops": hop_metrics,
-    "noisy": noisy_copies,
-    "lipschitz": bipartite,
-    "circle": circle,
-    "continuous": continuous,
-    "intervals": intervals,
-    "meshes": meshes,
+GROUPS: dict[str, tuple[Callable[[int], Iterator[Instance]], float]] = {
+    "plane": (plane, 60.0),
+    "space": (space, 60.0),
+    "hops100": (partial(hop_metrics, n=100), 10.0),
+    "hops200": (partial(hop_metrics, n=200), 10.0),
+    "noisy": (noisy_copies, 60.0),
+    "lipschitz": (bipartite, 60.0),
+    "circle": (circle, 60.0),
+    "continuous": (continuous, 60.0),
+    "intervals": (intervals, 60.0),
+    "meshes": (meshes, 60.0),
 }
+"""The instances of a seed, and the seconds allowed for each."""
 
 
 def show(
     name: str, seed: int, seconds: float, X: Any, Y: Any, covering_radii: tuple[float, float] = (0.0, 0.0)
-) -> None:
-    """Compare two spaces and print one line."""
+) -> dict[str, Any]:
+    """Compare two spaces and print one line; what it says."""
     start = time.perf_counter()
     if name.startswith("d_L"):
         result: Any = rinow.lipschitz_distance(X, Y, time_limit=seconds)
@@ -201,6 +206,8 @@ def show(
         f"{result.lower_bound_by:18s} {spent:6.1f} s",
         flush=True,
     )
+    bounds = {"lower": result.lower, "upper": result.upper, "exact": result.exact, "by": result.lower_bound_by}
+    return {"name": name, "seed": seed, **bounds, "seconds": round(spent, 2), "limit": seconds}
 
 
 def main() -> None:
@@ -208,16 +215,20 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("groups", nargs="*", default=list(GROUPS))
     parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--seconds", type=float, help="for each instance, instead of those of its group")
+    parser.add_argument("--page", action="store_true")
     options = parser.parse_args()
     rng = np.random.default_rng(2)
     for small in (12, 90):  # warms the kernels, serial and parallel
         rinow.gromov_hausdorff(cloud(rng, small), cloud(rng, small), time_limit=5)
         rinow.lipschitz_distance(cloud(rng, small), cloud(rng, small), time_limit=2)
+    rinow.gromov_hausdorff(hops(GRAPHS["G(n,.05)"](40, 7)), hops(GRAPHS["G(n,.05)"](40, 8)), time_limit=5)
     for group in options.groups:
-        for seed in range(options.seeds):
-            for name, *spaces in GROUPS[group](seed):
-                show(name, seed, options.seconds, *spaces)
+        (instances, limit), seeds = GROUPS[group], range(options.seeds)
+        seconds = limit if options.seconds is None else options.seconds
+        rows = [show(name, seed, seconds, *spaces) for seed in seeds for name, *spaces in instances(seed)]
+        if options.page:
+            write_page(Path(__file__).parents[1], group, rows)
 
 
 if __name__ == "__main__":

@@ -64,3 +64,16 @@ def test_facets_are_flat_and_walls_developable_from_their_own_side(noise):
     # A flat disk with noise τ in heights over a radius of about four edges h: K of order (τ/(4 h²))².
     assert np.median(np.abs(curvature.gaussian[inside])) < 1e-6 + 40 * noise
     assert len(origin) == sheets.n_vertices and len(mesh.vertices) == mesh.n_vertices
+
+
+@pytest.mark.parametrize("width", [0.05, 0.01])
+def test_no_curvature_at_a_boundary_exceeds_that_of_a_circle_through_an_edge(width):
+    # A noisy strip of one row of triangles, almost a line: the quadrics of its stars bend up to 1500.
+    rng, i = np.random.default_rng(7), np.arange(22)
+    V = np.column_stack([np.arange(24) / 2, width * (np.arange(24) % 2), 0.02 * rng.normal(size=24)])
+    F = np.column_stack([i + i % 2, i + 1 - i % 2, i + 2])
+    curvature = rinow.surface_curvature((V, F), method="sectional")
+    known = np.isfinite(curvature.gaussian)
+    assert known.any()
+    assert np.abs(curvature.k1[known]).max() * 0.5 <= 2.0
+    assert np.abs(curvature.k2[known]).max() * 0.5 <= 2.0

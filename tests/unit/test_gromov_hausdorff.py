@@ -17,6 +17,7 @@ from rinow.comparison.bounds import diameter_bound, eccentricity_bound, packing_
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import Engine
 from rinow.comparison.gromov_hausdorff import first_interval
+from rinow.comparison.level_search import LevelSearch
 from rinow.comparison.levels import Levels
 from rinow.comparison.symmetry import isometries
 from rinow.errors import InvalidInputError, NotAMetricError
@@ -234,3 +235,18 @@ def test_climbing_from_below_gives_the_distance_of_graphs(seed):
     steps.climb(engine, interval, clock, (isometries(X, clock), isometries(Y, clock)))
     assert interval.lower == interval.upper == exact
     assert distortion(interval.pairs, X, Y) == exact
+
+
+@pytest.mark.parametrize("seed", range(110, 122))
+def test_search_at_one_level_agrees_with_brute_force(seed):
+    rng = np.random.default_rng(seed)
+    X, Y = (hops(rng, n, share=0.2) if seed % 3 else polygon(n) for n in rng.integers(2, 6, 2))
+    engine, clock = Engine(X, Y), Clock(math.inf)
+    symmetries = isometries(X, clock), isometries(Y, clock)
+    exact = naive.least_distortion(X.tolist(), Y.tolist())
+    for level in np.unique(np.abs(X.reshape(-1, 1) - Y.reshape(1, -1))):
+        search = LevelSearch(engine, level, symmetries)
+        refuted, pairs = search.run(clock) if search.consistent else (True, None)
+        assert refuted == (level < exact - 1e-12)  # polygons: distances that should be equal differ by rounding
+        if pairs is not None:
+            assert distortion(pairs, X, Y) <= level

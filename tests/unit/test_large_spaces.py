@@ -15,6 +15,7 @@ from rinow.comparison.large_work import Work
 from rinow.comparison.surfaces import eccentricity_gap, sample_of
 from rinow.comparison.symmetry import isometries
 from rinow.errors import NotAMetricError
+from rinow.kernels import dives
 
 pytestmark = pytest.mark.usefixtures("compiled_searches")
 SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="dives in plain Python take minutes")
@@ -79,17 +80,18 @@ def test_dives_find_an_isometry():
     assert interval.lower <= interval.upper <= 2 * truth
 
 
-def test_extended_maps_keep_their_pairs():
+def test_completed_relation_keeps_its_pairs():
     rng = np.random.default_rng(34)
     X, Y = squareform(pdist(rng.random((20, 2)))), squareform(pdist(rng.random((25, 2))))
-    xs, ys = np.array([3, 5, 8]), np.array([1, 0, 7])
-    maps = Work(X, Y).extended(xs, ys, Clock(math.inf))
-    assert (maps.f[xs] == ys).all()
-    assert (maps.g[ys] == xs).all()
-    pairs, value = Work(X, Y).measured(maps)
+    partners = np.full(45, dives.LEFT_OVER)
+    partners[[3, 5, 8, 20 + 4]] = [1, 0, 7, 2]
+    relation = Work(X, Y).completed(partners, Clock(math.inf))
+    assert (relation[partners >= 0] == partners[partners >= 0]).all()
+    pairs, value = Work(X, Y).measured(relation)
     assert value == distortion(pairs, X, Y)
     assert set(pairs[:, 0]) == set(range(20))
     assert set(pairs[:, 1]) == set(range(25))
+    assert {(3, 1), (5, 0), (8, 7), (2, 4)} <= {(x, y) for x, y in pairs}
 
 
 @SLOW

@@ -9,10 +9,10 @@ import shapes
 from naive import jets as naive_jets
 from naive import tori as naive_tori
 from rinow import TriangleMesh
-from rinow.curvature.centres import cover, flat_frames, members_of_discs
+from rinow.curvature.centres import cover, flat_frames, members_of_discs, sizes_of_discs
 from rinow.curvature.sheet import patch_sheet
 from rinow.kernels import balls, nested_fits, patches
-from rinow.kernels.osculating_torus import offset_forms, torus_coordinates, torus_frame
+from rinow.kernels.osculating_torus import arc_place, offset_forms, torus_coordinates, torus_frame
 
 TORUS = shapes.noisy(shapes.irregular_torus(600), 0.02)
 SHEET, INDEX = patch_sheet(TriangleMesh(TORUS.vertices, TORUS.faces))
@@ -45,7 +45,7 @@ def test_curvatures_of_an_offset_from_a_torus(k1, k2):
     jet = (
         f(u1, u2), 0.2 + 0.6 * u1 + 0.2 * u2 + 0.3 * u1**2, -0.1 + 0.2 * u1 - 0.5 * u2, 0.6 + 0.6 * u1, 0.2, -0.5
     )  # fmt: skip
-    g11, g12, g22, l, m, n, volume = offset_forms(u2, k1, k2, *jet)
+    g11, g12, g22, l, m, n, volume = offset_forms(arc_place(u2, k2), k1, k2, *jet)
     assert volume == pytest.approx(math.sqrt(g11 * g22 - g12 * g12), rel=1e-13)
     K, H = naive_tori.offset_curvatures(f, u1, u2, k1, k2)
     # Differences of second order of numbers of size 1 with steps of 1e-3: 1e-16 / 1e-6.
@@ -104,6 +104,44 @@ def test_an_order_needs_more_points_than_unknowns():
     expected = {7: 1, 8: 2, 12: 2, 13: 3, 18: 3, 19: 4, 56: 7, 57: 8}
     assert {n: nested_fits.highest_order(n, 8) for n in expected} == expected
     assert nested_fits.highest_order(57, 4) == 4
+
+
+def second_derivatives(order, reach, u, v):
+    """(3, n_terms): f11, f12, f22 at a point for each coefficient of a polynomial in coordinates over the reach."""
+    units = np.eye(nested_fits.TERMS[order])
+    return np.array([patches.polynomial(c, order, reach, u, v)[3:] for c in units]).T
+
+
+def fit_of(u, v, order, reach):
+    points = np.stack([u, v, np.zeros_like(u), u * u + v * v])
+    work = nested_fits.fits(1)
+    nested_fits.add_moments(points, len(u), np.array([reach]), order, work)
+    assert nested_fits.fit_orders(0, reach, order, work) == order
+    return work, np.array(naive_tori.polynomial_columns(points[:3].T.tolist(), order, reach)).reshape(-1, len(u)).T
+
+
+@pytest.mark.parametrize("order", [2, 5, 7])
+def test_variance_beside_the_centre_is_that_of_least_squares(order):
+    u, v = np.random.default_rng(33).uniform(-2, 2, (2, 60))
+    work, columns = fit_of(u, v, order, 3.0)
+    covariance = np.linalg.inv(columns.T @ columns)
+    for place in ((0.0, 0.0), (1.0, -0.4)):
+        g = second_derivatives(order, 3.0, *place)
+        found = nested_fits.bend_variance(*place, 3.0, order, work, np.empty((3, 45)))
+        assert found == pytest.approx(np.trace(g @ covariance @ g.T), rel=1e-6)
+    c = work.covariances[order]
+    assert nested_fits.bend_variance(0.0, 0.0, 3.0, order, work, np.empty((3, 45))) == pytest.approx(c[0] + c[3] + c[5])
+
+
+def test_points_in_rows_fix_a_polynomial_at_the_centre_and_not_beside_it():
+    # 25 points near a square lattice, as marching cubes leave them: polynomials of order 5 may swing between its rows.
+    x, y = (g.ravel() for g in np.meshgrid(np.arange(-3, 4.0), np.arange(-3, 4.0)))
+    near = x * x + y * y < 2.9**2
+    u, v = np.stack([x[near], y[near]]) + 0.02 * np.random.default_rng(34).normal(size=(2, near.sum()))
+    assert len(u) < patches.ROOMY * nested_fits.TERMS[5]
+    work, _ = fit_of(u, v, 5, 3.0)
+    at_centre, beside = (nested_fits.bend_variance(s, 0.0, 3.0, 5, work, np.empty((3, 45))) for s in (0.0, 1.0))
+    assert beside > patches.LOOSE * at_centre
 
 
 def test_polynomial_has_its_derivatives():
@@ -171,12 +209,13 @@ def test_a_ball_does_not_enter_another_sheet():
 
 @pytest.mark.parametrize("radius", [0.9, 3.0])
 def test_centres_cover_the_sheet_and_are_in_no_disc_of_each_other(radius):
-    centres, sizes = cover(SHEET, np.full(len(INDEX), radius))
+    centres = cover(SHEET, np.full(len(INDEX), radius))
     everything = np.arange(len(INDEX), dtype=np.int32)
     starts, members = members_of_discs(SHEET, everything, centres, np.full(len(centres), radius))
     assert len(np.unique(members)) == len(INDEX)
-    wide = members_of_discs(SHEET, everything, centres, np.full(len(centres), 1.4 * radius))[0]
-    np.testing.assert_array_equal(np.diff(wide), sizes)
+    np.testing.assert_array_equal(np.diff(starts), sizes_of_discs(SHEET, centres, np.full(len(centres), radius)))
+    again = members_of_discs(SHEET, everything, centres, np.full(len(centres), radius), 1)  # too little room
+    np.testing.assert_array_equal(np.concatenate(again), np.concatenate([starts, members]))
     for i in range(len(centres)):
         row = members[starts[i] : starts[i + 1]]
         others = np.intersect1d(row, centres)
@@ -194,6 +233,6 @@ def test_the_choice_of_centres_knows_no_motion_no_scale_and_no_numbering():
     V = np.empty_like(TORUS.vertices)
     V[new] = 37.0 * TORUS.vertices @ Q.T + 1.0
     sheet, index = patch_sheet(TriangleMesh(V, new[TORUS.faces]))
-    centres = INDEX[cover(SHEET, np.full(len(INDEX), 2.0))[0]]
-    moved = index[cover(sheet, np.full(len(index), 2.0))[0]]
+    centres = INDEX[cover(SHEET, np.full(len(INDEX), 2.0))]
+    moved = index[cover(sheet, np.full(len(index), 2.0))]
     assert set(new[centres].tolist()) == set(moved.tolist())

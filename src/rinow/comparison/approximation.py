@@ -12,7 +12,6 @@ from rinow.comparison import bounds, steps
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import MAP, RELATION, Engine, worst_of
 from rinow.comparison.gromov_hausdorff import first_interval
-from rinow.comparison.interval import Interval
 from rinow.comparison.satisfiability import Satisfiability, solver_installed
 from rinow.errors import InvalidInputError
 from rinow.metric_space import MetricSpace, as_metric_space
@@ -103,17 +102,14 @@ def find_epsilon_isometry(X: Any, Y: Any, epsilon: float, *, time_limit: float =
     clock = Clock.of(time_limit)
     _check_scale(epsilon, "epsilon")
     DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
-    near = DY <= epsilon
-    interval = first_interval(DX, DY, 0.0)
-    engine = _improve(DX, DY, interval, clock, wanted=epsilon, hopeless=3.0 * epsilon)
-    if interval.upper <= epsilon:
-        f = np.empty(len(DX), np.intp)
-        f[interval.pairs[:, 0]] = interval.pairs[:, 1]
-        return EpsilonIsometry(True, f)
-    if engine is None or interval.lower > 3.0 * epsilon:
-        return EpsilonIsometry(False if interval.lower > 3.0 * epsilon else None, np.empty(0, np.intp))
-    found, pairs = _decide(Engine(DX, DY, MAP, both=False), epsilon, clock, np.eye(len(DX), dtype=bool), near)
-    return EpsilonIsometry(found, pairs[:, 1] if found else np.empty(0, np.intp))
+    found, pairs = _by_relation(DX, DY, clock, wanted=epsilon, hopeless=3.0 * epsilon)
+    if found is None:
+        engine = Engine(DX, DY, MAP, both=False)
+        found, pairs = _decide(engine, epsilon, clock, np.eye(len(DX), dtype=bool), DY <= epsilon)
+    f = np.empty(len(DX) if found else 0, np.intp)
+    if found:
+        f[pairs[:, 0]] = pairs[:, 1]
+    return EpsilonIsometry(found, f)
 
 
 def find_approximation(X: Any, Y: Any, epsilon: float, delta: float, *, time_limit: float = 60.0) -> Approximation:
@@ -171,18 +167,13 @@ def find_approximation(X: Any, Y: Any, epsilon: float, delta: float, *, time_lim
     level = float(np.nextafter(delta, 0.0))
     net_x, net_y = _net(DX, epsilon), _net(DY, epsilon)
     NX, NY = DX[np.ix_(net_x, net_x)], DY[np.ix_(net_y, net_y)]
-    on_nets = first_interval(NX, NY, 0.0)
-    _improve(NX, NY, on_nets, clock.part(0.3 * clock.left), wanted=level, hopeless=level)
-    if on_nets.upper <= level:
-        return Approximation(True, np.stack([net_x[on_nets.pairs[:, 0]], net_y[on_nets.pairs[:, 1]]], axis=1))
-    interval = first_interval(DX, DY, 0.0)
-    engine = _improve(DX, DY, interval, clock, wanted=level, hopeless=4.0 * epsilon + delta)
-    if interval.upper <= level:
-        return Approximation(True, interval.pairs)
-    if engine is None or interval.lower > 4.0 * epsilon + delta:
-        return Approximation(False if interval.lower > 4.0 * epsilon + delta else None, np.empty((0, 2), np.intp))
-    found, pairs = _decide(Engine(DX, DY, RELATION, both=False), level, clock, DX <= epsilon, DY <= epsilon)
-    return Approximation(found, pairs)
+    found, pairs = _by_relation(NX, NY, clock.part(0.3 * clock.left), wanted=level, hopeless=level)
+    if found:
+        return Approximation(True, np.stack([net_x[pairs[:, 0]], net_y[pairs[:, 1]]], axis=1))
+    found, pairs = _by_relation(DX, DY, clock, wanted=level, hopeless=4.0 * epsilon + delta)
+    if found is None:
+        found, pairs = _decide(Engine(DX, DY, RELATION, both=False), level, clock, DX <= epsilon, DY <= epsilon)
+    return Approximation(found, pairs if found else np.empty((0, 2), np.intp))
 
 
 def _check_scale(value: float, name: str) -> None:
@@ -190,18 +181,19 @@ def _check_scale(value: float, name: str) -> None:
         raise InvalidInputError(f"{name} = {value} is not a length; give a number >= 0.")
 
 
-def _improve(
-    DX: Floats, DY: Floats, interval: Interval, clock: Clock, *, wanted: float, hopeless: float
-) -> Engine | None:
-    """Bounds and a tabu search, unless the interval decides already; None if it does or the time is over."""
-    if interval.upper <= wanted or interval.lower > hopeless or clock.over:
-        return None
-    engine = Engine(DX, DY, clock=clock)
-    interval.raise_lower(engine.row_bound, "sorted distances")
-    interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
-    if interval.lower <= hopeless:
-        steps.warm_start(engine, interval, clock.part(0.2 * clock.left), target=wanted)
-    return engine
+def _by_relation(
+    DX: Floats, DY: Floats, clock: Clock, *, wanted: float, hopeless: float
+) -> tuple[bool | None, Indices]:
+    """What the distance decides, and the best relation: true if that is within the level, false if none is by far."""
+    interval = first_interval(DX, DY, 0.0)
+    if interval.upper > wanted and interval.lower <= hopeless and not clock.over:
+        engine = Engine(DX, DY, clock=clock)
+        interval.raise_lower(engine.row_bound, "sorted distances")
+        interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
+        if interval.lower <= hopeless:
+            steps.warm_start(engine, interval, clock.part(0.2 * clock.left), target=wanted)
+    found = True if interval.upper <= wanted else False if interval.lower > hopeless else None
+    return found, interval.pairs
 
 
 def _net(D: Floats, epsilon: float) -> Indices:

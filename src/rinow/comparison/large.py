@@ -11,13 +11,15 @@ from numpy.typing import NDArray
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import RELATION
 from rinow.comparison.interval import Interval
-from rinow.comparison.large_work import Maps, Work, farthest_points
+from rinow.comparison.large_work import NET, Work, farthest_points
 from rinow.comparison.warm_start import RelationTabu
 from rinow.kernels import compatibility
+from rinow.kernels.dives import LEFT_OVER
 
 __all__ = ["LARGE", "approach"]
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
 LARGE = 400_000_000
 """n m (n + m) from which the tables of the exact search take too long to fill."""
@@ -28,8 +30,8 @@ TIGHT, LOOSE = (1.0005, 1.01, 1.005, 1.02), (0.2, 0.4, 0.6, 0.8)
 LOOSENESS = 2.0
 """The lower bound is called tight when the upper one is below this multiple of it."""
 
-FIRST_POINTS = (6, 12)
-"""Farthest points that get their partners first."""
+TIGHT_LEVELS = 32
+"""Tight levels that are tried before loose ones where the lower bound may be weak."""
 
 REPAIRS = 20
 """Repairs without progress before a target is given up."""
@@ -43,17 +45,11 @@ BALLS = (0.0, 0.05, 0.1, 0.15, 0.2)
 STEPS = (0.97, 0.985, 0.993)
 """Targets of repair as shares of the distortion; the next one after a failure."""
 
-TIGHT_DIVES = 40
-"""Dives at tight levels before loose ones, whose long lists cost much, are tried where the lower bound is weak."""
-
-DIVES_BEFORE_NETS = 8
-"""Dives that are tried for nearly isometric spaces before maps are extended from nets."""
-
 ABOVE = 1.0 + 1e-6
 """Targets stay above the lower bound by this factor: single precision."""
 
-NET, NET_MOVES = 150, 4000
-"""Points of the nets of the first relation, and moves of a tabu search between them."""
+TABU_NET, TABU_MOVES = 150, 4000
+"""Points of the nets between which a tabu search finds a relation where the lower bound is weak, and its moves."""
 
 ROWS = 48
 """Points of each space whose sorted distances are compared with those of all points of the other one."""
@@ -65,38 +61,62 @@ def approach(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
     if interval.closed or clock.over:
         return
     work = Work(DX, DY)
-    for k, (level, n_first) in enumerate(_levels(interval)):
+    for k, level in enumerate(_levels(interval)):
         if interval.closed or clock.over:
             return
-        if k == DIVES_BEFORE_NETS and interval.upper > LOOSENESS * interval.lower:
-            maps = _from_nets(work, interval, clock)
-            if maps is not None:
-                _tighten(work, maps, interval, clock)
-        maps = work.dive(level, n_first, clock.part(0.2 * clock.left))
-        if maps is None:
-            continue
-        better = _repair(work, maps, level, clock)
-        interval.offer(*work.measured(better or maps))
-        if better is not None or interval.upper > LOOSENESS * interval.lower:
-            _tighten(work, better or maps, interval, clock)
+        if k == TIGHT_LEVELS and interval.upper > LOOSENESS * interval.lower:
+            relation = _from_nets(work, interval, clock)
+            if relation is not None:
+                _tighten(work, relation, interval, clock)
+        relation, fits = _grown(work, level, clock)
+        if fits and relation is not None:
+            _tighten(work, relation, interval, clock)
 
 
-def _from_nets(work: Work, interval: Interval, clock: Clock) -> Maps | None:
+def _grown(work: Work, level: float, clock: Clock) -> tuple[Indices | None, bool]:
+    """A relation of all points that begins with a dive for a net, and whether it fits the level.
+
+    The net grows while repair takes all conflicts out; then the rest gets the partners that agree best.
+    """
+    begun = work.begun(level, clock)
+    if begun is None:
+        return None, False
+    relation, promising = begun
+    size, largest = NET, max(len(work.X), len(work.Y))
+    while promising:
+        repaired = _repair(work, relation, level, clock)
+        if repaired is None:
+            break
+        relation = repaired
+        if size >= largest:
+            return relation, True
+        size *= 2
+        larger = work.extended(relation, size, level, clock)
+        if larger is None:
+            break
+        relation = larger
+    return work.completed(np.where(relation < 0, LEFT_OVER, relation), clock), False
+
+
+def _from_nets(work: Work, interval: Interval, clock: Clock) -> Indices | None:
     """The best relation of two nets found by tabu search, extended to all points; None if the time does not suffice."""
     search_clock = clock.part(0.15 * clock.left)
-    xs, ys = farthest_points(work.DX, NET), farthest_points(work.DY, NET)
+    xs, ys = farthest_points(work.DX, TABU_NET), farthest_points(work.DY, TABU_NET)
     NX, NY = work.DX[np.ix_(xs, xs)], work.DY[np.ix_(ys, ys)]
     rng = np.random.default_rng(22)
     best = RelationTabu(NX, NY, rng.integers(len(ys), size=len(xs)), rng.integers(len(xs), size=len(ys)), 0)
-    best.run(NET_MOVES, search_clock)
+    best.run(TABU_MOVES, search_clock)
     for seed in range(1, 8):
         f, g = rng.integers(len(ys), size=len(xs)), rng.integers(len(xs), size=len(ys))
         search = RelationTabu(NX, NY, f, g, seed)
-        search.run(NET_MOVES, search_clock, interval.lower)
+        search.run(TABU_MOVES, search_clock, interval.lower)
         best = search if search.best < best.best else best
         if search_clock.over:
             break
-    return work.extended(xs[best.pairs[:, 0]], ys[best.pairs[:, 1]], clock)
+    partners = np.full(len(work.X) + len(work.Y), LEFT_OVER)
+    partners[xs[best.pairs[:, 0]]] = ys[best.pairs[:, 1]]
+    partners[len(work.X) + ys[best.pairs[:, 1]]] = xs[best.pairs[:, 0]]
+    return work.completed(partners, clock)
 
 
 def _bound_by_rows(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
@@ -111,24 +131,24 @@ def _bound_by_rows(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> 
             interval.raise_lower(float(levels.min(axis=1).max()), "sorted distances")
 
 
-def _levels(interval: Interval) -> Iterator[tuple[float, int]]:
-    """Levels for dives in turn, and how many farthest points come first."""
+def _levels(interval: Interval) -> Iterator[float]:
+    """Levels for dives in turn."""
     for k in count():
-        if interval.lower > 0 and (k < TIGHT_DIVES or k % 8 < 6 or interval.upper < LOOSENESS * interval.lower):
-            level = TIGHT[k % len(TIGHT)] * interval.lower
+        tight = interval.upper < LOOSENESS * interval.lower or k < TIGHT_LEVELS or k % 8 < 4
+        if interval.lower > 0 and tight:
+            yield TIGHT[k % len(TIGHT)] * interval.lower
         else:
-            level = interval.lower + LOOSE[k % len(LOOSE)] * (interval.upper - interval.lower)
-        yield level, FIRST_POINTS[k // len(TIGHT) % len(FIRST_POINTS)]
+            yield interval.lower + LOOSE[k % len(LOOSE)] * (interval.upper - interval.lower)
 
 
-def _tighten(work: Work, maps: Maps, interval: Interval, clock: Clock) -> None:
-    """Repair maps at falling targets while that succeeds."""
-    pairs, value = work.measured(maps)
+def _tighten(work: Work, relation: Indices, interval: Interval, clock: Clock) -> None:
+    """Repair a relation at falling targets while that succeeds."""
+    pairs, value = work.measured(relation)
     interval.offer(pairs, value)
     step = 0
     while step < len(STEPS) and not interval.closed and not clock.over:
         target = max(ABOVE * interval.lower, STEPS[step] * value)
-        repaired = _repair(work, maps, target, clock)
+        repaired = _repair(work, relation, target, clock)
         if repaired is None:
             step += 1
             continue
@@ -136,23 +156,23 @@ def _tighten(work: Work, maps: Maps, interval: Interval, clock: Clock) -> None:
         interval.offer(pairs, smaller)
         if smaller >= value:
             return
-        maps, value, step = repaired, smaller, 0
+        relation, value, step = repaired, smaller, 0
 
 
-def _repair(work: Work, maps: Maps, target: float, clock: Clock) -> Maps | None:
+def _repair(work: Work, relation: Indices, target: float, clock: Clock) -> Indices | None:
     """Take the pairs in conflict out, with some others, and dive for them again, until none is left; None if one is."""
-    wrong, stalled = work.conflicts(maps, target), 0
-    fewest = wrong.sum()
-    while wrong.any():
+    wrong, stalled = work.conflicts(relation, target), 0
+    fewest = len(wrong)
+    while len(wrong):
         if stalled == REPAIRS or clock.over:
             return None
-        again = work.dive_again(maps, wrong, target, BALLS[stalled % len(BALLS)], clock)
+        again = work.repaired(relation, wrong, target, BALLS[stalled % len(BALLS)], clock)
         stalled += 1
         if again is None:
             continue
         conflicts = work.conflicts(again, target)
-        if conflicts.sum() < fewest:
-            fewest, stalled = conflicts.sum(), 0
-        if conflicts.sum() <= WORSE * fewest:
-            maps, wrong = again, conflicts
-    return maps
+        if len(conflicts) < fewest:
+            fewest, stalled = len(conflicts), 0
+        if len(conflicts) <= WORSE * fewest:
+            relation, wrong = again, conflicts
+    return relation

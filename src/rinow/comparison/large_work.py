@@ -1,9 +1,8 @@
-"""What dives and repairs of large spaces share: single precision copies, and maps measured in double."""
+"""What dives and repairs of large spaces share: single precision copies, and relations measured in double."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +11,22 @@ from rinow.comparison.clock import Clock
 from rinow.comparison.engine import RELATION
 from rinow.kernels import distortion
 from rinow.kernels import dives as dive_kernels
+from rinow.kernels.dives import ABSENT, LEFT_OVER, UNDECIDED
 
-__all__ = ["Maps", "Work", "farthest_points"]
+__all__ = ["Work", "farthest_points"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Flags = NDArray[np.bool_]
+
+TRIES = 8
+"""Dives that begin a relation at the same time; the best one goes on."""
+
+NET = 300
+"""Farthest points of each space for which these dives look for partners."""
+
+MOST_ORPHANS = 0.03
+"""Share of the points that such a dive may leave over."""
 
 BALLS = 4
 """Pairs in conflict around which a repair takes out others too."""
@@ -25,125 +34,141 @@ BALLS = 4
 EXAMINED = 100_000_000
 """Distances that may be examined between two looks at the clock; most partners are given up after a few."""
 
-MOST_ORPHANS = 700
-"""Points a dive may leave over."""
-
-
-class Maps(NamedTuple):
-    """Maps f: X → Y and g: Y → X."""
-
-    f: Indices
-    g: Indices
-
-    @property
-    def xs(self) -> Indices:
-        """Points of X of the pairs of both graphs, f before g."""
-        return np.concatenate([np.arange(len(self.f)), self.g])
-
-    @property
-    def ys(self) -> Indices:
-        """Points of Y of the pairs of both graphs, f before g."""
-        return np.concatenate([self.f, np.arange(len(self.g))])
-
 
 class Work:
-    """Two spaces, their weights and random numbers."""
+    """Two spaces, their weights and random numbers.
+
+    A relation is an array of n + m partners: of the points of X among those of Y, then of those of Y among X.  Points
+    that take no part have the mark ABSENT.
+    """
 
     def __init__(self, DX: Floats, DY: Floats) -> None:
         self.DX, self.DY = DX, DY
         self.scale = float(max(DX.max(), DY.max())) or 1.0
         self.X, self.Y = (DX / self.scale).astype(np.float32), (DY / self.scale).astype(np.float32)
-        self._apart = np.abs(DX.max(axis=1)[:, None] - DY.max(axis=1))
+        self._eccentricities = self.X.max(axis=1), self.Y.max(axis=1)
         n, m = len(DX), len(DY)
-        self._lists, self._counts = np.empty((n + m, max(n, m)), np.int32), np.empty(n + m, np.int64)
+        self._order = farthest_points(DX, n), n + farthest_points(DY, m)
+        self._lists, k = np.empty((n + m, max(n, m)), np.int32), len(self.net(NET))
+        self._counts = np.empty(0, np.int64)
+        self._room = (
+            np.empty((TRIES, k, max(n, m)), np.int32), np.empty((TRIES, k), np.int64), np.empty((TRIES, k), np.int64)
+        )  # fmt: skip
         self._weights = np.ones(n + m)
         self._random = np.array([0x2545F4914F6CDD1D], np.uint64)
         self._rng = np.random.default_rng(21)
 
-    def measured(self, maps: Maps) -> tuple[Indices, float]:
-        """The union of two graphs and its distortion."""
-        pairs = np.unique(np.stack([maps.xs, maps.ys], axis=1), axis=0)
-        values, places = np.empty(len(pairs)), np.empty(len(pairs), np.intp)
+    def net(self, size: int) -> Indices:
+        """The first farthest points of both spaces."""
+        return np.concatenate([order[:size] for order in self._order])
+
+    def pairs(self, partners: Indices) -> tuple[Indices, Indices, Indices]:
+        """The places that have a partner, and the pairs of these as points of X and of Y."""
+        n, places = len(self.X), np.flatnonzero(partners >= 0)
+        own, other = places, partners[places]
+        return places, np.where(own < n, own, other), np.where(own < n, other, own - n)
+
+    def measured(self, partners: Indices) -> tuple[Indices, float]:
+        """The pairs and their distortion."""
+        _, xs, ys = self.pairs(partners)
+        pairs = np.unique(np.stack([xs, ys], axis=1), axis=0)
+        values, worst = np.empty(len(pairs)), np.empty(len(pairs), np.intp)
         xs, ys = np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
-        distortion.worst_partners(RELATION, self.DX, self.DY, xs, ys, values, places)
+        distortion.worst_partners(RELATION, self.DX, self.DY, xs, ys, values, worst)
         return pairs, float(values.max())
 
-    def conflicts(self, maps: Maps, level: float) -> Flags:
-        """Which pairs of the two graphs disagree with some other one."""
-        wrong = np.empty(len(maps.xs), np.bool_)
-        dive_kernels.disagreements(self.X, self.Y, maps.xs, maps.ys, np.float32(level / self.scale), wrong)
-        return wrong
+    def conflicts(self, partners: Indices, level: float) -> Indices:
+        """The places whose pairs disagree with some other pair."""
+        places, xs, ys = self.pairs(partners)
+        wrong = np.empty(len(places), np.bool_)
+        dive_kernels.disagreements(self.X, self.Y, xs, ys, np.float32(level / self.scale), wrong)
+        return places[wrong]
 
-    def dive(self, level: float, n_first: int, clock: Clock) -> Maps | None:
-        """One dive at a level, completed to two maps; None if it left too many points over or the time is up."""
-        partners = np.full(len(self._weights), dive_kernels.UNDECIDED)
-        nothing = np.empty(0, np.int64)
-        return self._finished(partners, farthest_points(self.DX, n_first), nothing, nothing, level, clock)
-
-    def dive_again(self, maps: Maps, wrong: Flags, level: float, radius: float, clock: Clock) -> Maps | None:
-        """A dive for the pairs in conflict and those near a few of them, while the rest stays."""
-        free, xs, ys = wrong.copy(), maps.xs, maps.ys
-        for p in self._rng.choice(np.flatnonzero(wrong), min(BALLS, int(wrong.sum())), replace=False):
-            free |= (self.X[xs[p], xs] < radius) | (self.Y[ys[p], ys] < radius)
-        partners = np.concatenate([maps.f, maps.g])
-        partners[free] = dive_kernels.UNDECIDED
-        kept = self._rng.permutation(np.flatnonzero(~free))
-        nothing = np.empty(0, np.int64)
-        return self._finished(partners, nothing, maps.xs[kept], maps.ys[kept], level, clock)
-
-    def _finished(
-        self, partners: Indices, first: Indices, xs: Indices, ys: Indices, level: float, clock: Clock
-    ) -> Maps | None:
-        state = self._state(partners, first)
-        t, step = np.float32(level / self.scale), 1
-        possible, places = self._apart <= level, np.flatnonzero(partners == dive_kernels.UNDECIDED)
-        for part in self._parts(places, len(xs), clock):
-            dive_kernels.list_partners(part, self.X, self.Y, possible, xs, ys, t, self._lists, self._counts)
-        if clock.over:
+    def begun(self, level: float, clock: Clock) -> tuple[Indices, bool] | None:
+        """The best of some dives for a net, and whether it left few points over; None if the time is over before."""
+        places, n_points = self.net(NET), len(self._weights)
+        if not self._list(places, np.full(n_points, ABSENT), level, clock):
             return None
-        dive_kernels.begin(state)
-        while dive_kernels.descend(state, t, step, MOST_ORPHANS):
+        k, t, most = len(places), np.float32(level / self.scale), int(MOST_ORPHANS * len(places))
+        lists, counts, undecided = self._room
+        partners = np.full((TRIES, n_points), ABSENT)
+        partners[:, places] = UNDECIDED
+        weights, numbers = np.ones((TRIES, n_points)), np.zeros((TRIES, 2), np.int64)
+        random = self._rng.integers(1, 1 << 63, size=(TRIES, 1)).astype(np.uint64)
+        dive_kernels.many_dives(
+            self.X, self.Y, places, self._lists[:k], self._counts, t, most, lists, counts, undecided, partners, weights,
+            random, numbers,
+        )  # fmt: skip
+        orphans, still_open = numbers.T
+        best = np.lexsort((orphans, still_open))[0]
+        partners = partners[best]
+        partners[partners == UNDECIDED] = LEFT_OVER
+        begun = self.completed(partners, clock)
+        return None if begun is None else (begun, bool(orphans[best] <= most))
+
+    def extended(self, partners: Indices, size: int, level: float, clock: Clock) -> Indices | None:
+        """The relation with partners for a larger net; None if the time is over before."""
+        places, partners = self.net(size), partners.copy()
+        partners[places[partners[places] < 0]] = UNDECIDED
+        return self._finished(partners, level, clock)
+
+    def repaired(self, partners: Indices, wrong: Indices, level: float, radius: float, clock: Clock) -> Indices | None:
+        """A dive for the places in conflict and those near a few of them, while the rest stays."""
+        again, (places, xs, ys) = partners.copy(), self.pairs(partners)
+        again[wrong] = UNDECIDED
+        for v in self._rng.choice(wrong, min(BALLS, len(wrong)), replace=False):
+            p = np.searchsorted(places, v)
+            again[places[(self.X[xs[p], xs] < radius) | (self.Y[ys[p], ys] < radius)]] = UNDECIDED
+        return self._finished(again, level, clock)
+
+    def _list(self, places: Indices, partners: Indices, level: float, clock: Clock) -> bool:
+        """List the possible partners of some places; whether the time sufficed."""
+        _, xs, ys = self.pairs(partners)
+        order = self._rng.permutation(len(xs))
+        xs, ys, t = xs[order], ys[order], np.float32(level / self.scale)
+        self._counts = np.empty(len(places), np.int64)
+        for part in self._parts(len(places), len(xs), clock):
+            dive_kernels.list_partners(
+                places[part], self.X, self.Y, *self._eccentricities, xs, ys, t, self._lists[part], self._counts[part]
+            )
+        return not clock.over
+
+    def _finished(self, partners: Indices, level: float, clock: Clock) -> Indices | None:
+        """The relation after a dive for all undecided places."""
+        places = np.flatnonzero(partners == UNDECIDED)
+        if not self._list(places, partners, level, clock):
+            return None
+        k, t, step = len(places), np.float32(level / self.scale), 1
+        dive = dive_kernels.Dive(
+            self.X, self.Y, places, self._lists[:k], self._counts, np.empty(k, np.int64), partners, self._weights,
+            self._random, np.zeros(2, np.int64),
+        )  # fmt: skip
+        dive_kernels.begin(dive)
+        while dive_kernels.descend(dive, t, step, len(partners)):
             if clock.over:
                 return None
             step = 8 if self._counts.sum() < 40 * len(partners) else 1
-        if state.orphans[0] > MOST_ORPHANS:
-            return None
-        return self._completed(state, clock)
+        return self.completed(partners, clock)
 
-    def extended(self, xs: Indices, ys: Indices, clock: Clock) -> Maps | None:
-        """Some pairs, completed to two maps: other points get the partner that agrees best with the pairs.
+    def completed(self, partners: Indices, clock: Clock) -> Indices | None:
+        """The relation with a partner for each point that was left over: the one that agrees best with the pairs.
 
         None if the time is over before.
         """
-        n, m = len(self.X), len(self.Y)
-        partners = np.full(n + m, dive_kernels.LEFT_OVER)
-        partners[xs], partners[n + ys] = ys, xs
-        return self._completed(self._state(partners, np.empty(0, np.int64)), clock)
+        places, (_, xs, ys) = np.flatnonzero(partners == LEFT_OVER), self.pairs(partners)
+        found, partners = np.empty(len(places), np.int64), partners.copy()
+        for part in self._parts(len(places), len(xs), clock):
+            dive_kernels.complete(places[part], self.X, self.Y, xs, ys, found[part])
+        partners[places] = found
+        return None if clock.over else partners
 
-    def _state(self, partners: Indices, first: Indices) -> dive_kernels.Dive:
-        return dive_kernels.Dive(
-            self.X, self.Y, self._lists, self._counts, partners, first, self._weights, self._random,
-            np.zeros(1, np.int64),
-        )  # fmt: skip
-
-    def _completed(self, state: dive_kernels.Dive, clock: Clock) -> Maps | None:
-        n, most = len(self.X), len(state.partners)
-        xs, ys = np.empty(most, np.int64), np.empty(most, np.int64)
-        n_pairs = dive_kernels.pairs_made(state, xs, ys)
-        partners = state.partners.astype(np.int64)
-        for part in self._parts(np.flatnonzero(partners < 0), n_pairs, clock):
-            found = np.empty(len(part), np.int64)
-            dive_kernels.complete(part, self.X, self.Y, xs[:n_pairs], ys[:n_pairs], found)
-            partners[part] = found
-        return Maps(partners[:n], partners[n:]) if (partners >= 0).all() else None
-
-    def _parts(self, places: Indices, n_pairs: int, clock: Clock) -> Iterator[Indices]:
-        """Parts of the places, to be held against so many pairs, until the time is over."""
+    def _parts(self, n_places: int, n_pairs: int, clock: Clock) -> Iterator[slice]:
+        """Parts of so many places, to be held against so many pairs, until the time is over."""
         step = max(2, EXAMINED // (self._lists.shape[1] * n_pairs + 1))
-        for start in range(0, len(places), step):
+        for start in range(0, n_places, step):
             if clock.over:
                 return
-            yield places[start : start + step]
+            yield slice(start, start + step)
 
 
 def farthest_points(D: Floats, k: int) -> Indices:

@@ -140,7 +140,7 @@ class Satisfiability:
             return
         ways = list(zip(isometries, (variables, variables.T), strict=True))
         for symmetric, table in ways if self.engine.both else ways[1:]:
-            if not symmetric.trivial and len(symmetric.representatives([])) == 1 and table.shape[1] > 1:
+            if symmetric.transitive and table.shape[1] > 1:
                 counts = (table > 0).sum(axis=0)
                 y0, y1 = (int(y) for y in np.argsort(counts, kind="stable")[:2])
                 x0 = int(symmetric.representatives([])[0])

@@ -12,6 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, RELATION, Engine, Search
 from rinow.comparison.interval import Interval
+from rinow.comparison.level_search import LevelSearch
 from rinow.comparison.satisfiability import Satisfiability, solver_installed
 from rinow.comparison.symmetry import Isometries, isometries
 from rinow.comparison.warm_start import BijectionTabu, RelationTabu, TabuSearch
@@ -52,7 +53,7 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
     symmetries = isometries(engine.DX, listing), isometries(engine.DY, listing)
     if engine.kind == BIJECTION:
         symmetries = symmetries[0].exact(), symmetries[1].exact()
-    homogeneous = not (symmetries[0].trivial and symmetries[1].trivial)
+    homogeneous = any(symmetric.transitive for symmetric in symmetries)
     share, climbing = (0.05, 0.05) if homogeneous else (0.2, CLIMB)
     if engine.kind == RELATION and engine.levels.few:
         climb(engine, interval, clock.part(climbing * clock.left), symmetries)
@@ -69,7 +70,8 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
 def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: float = 0.0) -> None:
     """Tabu search from several starts: the rows that agree best and the best relation so far, then random maps.
 
-    Nearly isometric spaces are done after the first: arc consistency refutes what is below.
+    Nearly isometric spaces are done after the first: arc consistency refutes what is below.  Where levels are few they
+    are met one by one afterwards.
     """
     rng = np.random.default_rng(20)
     for k, search in enumerate(_searches(engine, rng, interval)):
@@ -77,7 +79,7 @@ def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: floa
         interval.offer(search.pairs, search.best)
         if interval.upper <= target:
             return
-        if k == 0 and not interval.closed:
+        if k == 0 and not interval.closed and not engine.levels.few:
             level = interval.wanted
             if engine.consistent(level, clock.part(PROOF * clock.left)) is None:
                 interval.refuted(level, engine, "arc consistency")
@@ -137,17 +139,13 @@ def climb(engine: Engine, interval: Interval, clock: Clock, symmetries: Symmetri
         if level >= interval.upper or level <= last:  # the error of isometries may hide the next level
             return
         last = level
-        possible = engine.consistent(level, clock)
-        if possible is None:
+        search = LevelSearch(engine, level, symmetries)
+        if not search.consistent:
             interval.refuted(level, engine, "arc consistency")
             continue
-        if not engine.fits(possible):
-            return
-        search = Search(engine, possible, level, clock, (symmetries[0].images, symmetries[1].images))
         exhausted, pairs = search.run(clock)
         if exhausted:
-            error = symmetries[0].error + symmetries[1].error
-            interval.refuted(level, engine, "search", error * search.depth_of_proof)
+            interval.refuted(level, engine, "search", search.error)
         elif pairs is None:
             return
         else:

@@ -32,6 +32,11 @@ class Isometries(NamedTuple):
         """Whether the identity is the only one."""
         return len(self.images) == 1
 
+    @property
+    def transitive(self) -> bool:
+        """Whether they take every point to the first one: the space is homogeneous."""
+        return bool((self.images == 0).any(axis=0).all())
+
     def exact(self) -> Isometries:
         """Those that change no distance at all."""
         return self if self.error == 0 else Isometries(self.images[:1], 0.0)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.sheet import sorted_by
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers
 
-__all__ = ["CORE", "cover", "flat_frames", "members_of_discs"]
+__all__ = ["CORE", "cover", "flat_frames", "members_of_discs", "sizes_of_discs"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -17,8 +18,8 @@ CORE = 1.4
 """Radius of the part of a patch that is used, over the radius within which the centre is the only one."""
 
 
-def cover(sheet: balls.Sheet, radii: Floats) -> tuple[Ints, Ints]:
-    """Vertices within whose radii all vertices lie, and the sizes of their discs of `CORE` radii.
+def cover(sheet: balls.Sheet, radii: Floats) -> Ints:
+    """Vertices within whose radii all vertices lie, ascending.
 
     Parameters
     ----------
@@ -35,26 +36,41 @@ def cover(sheet: balls.Sheet, radii: Floats) -> tuple[Ints, Ints]:
     """
     keys = np.empty(len(radii), np.uint32)
     covers.shape_keys(sheet.vertices, sheet.offsets, sheet.neighbours, keys)
-    candidates = np.argsort(keys, kind="stable").astype(np.int32)
-    centres, sizes = np.empty(len(radii), np.int32), np.empty(len(radii), np.int32)
-    count = covers.cover(candidates, radii * sheet.spacing, CORE, sheet, centres, sizes)
-    order = np.argsort(centres[:count])
-    return centres[order], sizes[order]
+    centres = np.empty(len(radii), np.int32)
+    count = covers.cover(sorted_by(keys), radii * sheet.spacing, sheet, centres)
+    return np.sort(centres[:count])
 
 
-def members_of_discs(sheet: balls.Sheet, targets: Ints, sources: Ints, radii: Floats) -> tuple[Ints, Ints]:
-    """Compressed rows: the numbers of the targets in the disc of each source, grown over edges; radii in spacings."""
+def sizes_of_discs(sheet: balls.Sheet, sources: Ints, radii: Floats) -> Ints:
+    """Number of vertices in the disc of each source, grown over edges; radii in spacings."""
+    everything = np.arange(len(sheet.vertices), dtype=np.int32)
+    return _linked(sheet, everything, sources, radii, np.zeros(len(sources) + 1, np.int64))[0]
+
+
+def members_of_discs(
+    sheet: balls.Sheet, targets: Ints, sources: Ints, radii: Floats, room: int = 32
+) -> tuple[Ints, Ints]:
+    """Compressed rows: the numbers of the targets in the disc of each source, grown over edges; radii in spacings.
+
+    It takes twice as long if a disc has more targets than `room`.
+    """
     places = np.full(len(sheet.vertices), -1, np.int32)
     places[targets] = np.arange(len(targets), dtype=np.int32)
-    lengths = radii * sheet.spacing[sources]
-    counts, starts = np.empty(len(sources), np.int32), np.zeros(len(sources) + 1, np.int32)
-    members = np.empty(0, np.int32)
-    for is_counting in (True, False):
-        covers.link(places, sources, lengths, counts, starts, is_counting, N_BLOCKS, sheet, members)
-        if is_counting:
-            np.cumsum(counts, out=starts[1:])
-            members = np.empty(starts[-1], np.int32)
-    return starts, members
+    counts, links = _linked(sheet, places, sources, radii, np.arange(len(sources) + 1) * room)
+    starts = np.zeros(len(sources) + 1, np.int32)
+    np.cumsum(counts, out=starts[1:])
+    if counts.max(initial=0) > room:
+        return starts, _linked(sheet, places, sources, radii, starts.astype(np.int64))[1]
+    return starts, links.reshape(len(sources), room)[np.arange(room) < counts[:, None]]
+
+
+def _linked(
+    sheet: balls.Sheet, places: Ints, sources: Ints, radii: Floats, starts: NDArray[np.int64]
+) -> tuple[Ints, Ints]:
+    """How many targets are in the disc of each source, and those that fit into rows from `starts` on."""
+    counts, links = np.empty(len(sources), np.int32), np.empty(starts[-1], np.int32)
+    covers.link(places, sources, radii * sheet.spacing[sources], starts, N_BLOCKS, sheet, counts, links)
+    return counts, links
 
 
 def flat_frames(sheet: balls.Sheet, rows: Ints) -> Floats:

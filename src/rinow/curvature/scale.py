@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.centres import cover, flat_frames, members_of_discs
 from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
+from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 
@@ -27,7 +28,8 @@ ROUNDING = 1e-15
 """Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
 """Reach of a sample over the vertices it speaks for, and over the samples it is averaged with, in radii it covers."""
-
+DENSE = 6.0
+"""Vertices in a disc over its squared radius in spacings: 3.6 in a mesh of equilateral triangles, rarely above 5."""
 
 LADDER = np.array([1.6, 2.0, 2.5, 3.1, 3.8, 4.7, 5.8, 7.2, 9.0, 11.2, 14.0, 17.0])
 """Radii of balls, in spacings."""
@@ -97,7 +99,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -
 
     n = len(sheet.vertices)
     radius = next(fine if is_refined else coarse for size, fine, coarse in SAMPLE_SPACINGS if n <= size)
-    centres, _ = cover(sheet, np.full(n, radius))
+    centres = cover(sheet, np.full(n, radius))
     m = len(centres)
     links = members_of_discs(sheet, centres, centres, np.full(m, AROUND * radius))
     n_plane = min(PILOT_RADII, len(ladder.reaches))
@@ -107,7 +109,8 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
     torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, len(ladder.reaches), False, links, tasks)
     everything = np.arange(n, dtype=np.int32)
-    member_starts, members = members_of_discs(sheet, everything, centres, np.full(m, NEAR * radius))
+    room = int(DENSE * (NEAR * radius) ** 2)
+    member_starts, members = members_of_discs(sheet, everything, centres, np.full(m, NEAR * radius), room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
     return Samples(starts, near, member_starts, members, plane_logs, torus_logs, choice, noise)
@@ -161,7 +164,8 @@ def windows(samples: Samples) -> tuple[Ints, Ints, Ints, Floats]:
 def chosen_at(vertices: Ints, samples: Samples, logs: Floats) -> Choice:
     """The least mean logarithmic risk among the samples near each vertex."""
     choice = _empty_choice(len(vertices))
-    covers.choices(vertices, samples.starts, samples.near, logs, *choice)
+    table = logs.reshape(len(logs), logs.shape[1] * logs.shape[2])
+    covers.choices(vertices, samples.starts, samples.near, table, N_ORDERS, N_BLOCKS, *choice)
     return choice
 
 

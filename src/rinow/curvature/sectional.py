@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
 from rinow.curvature.angle_defect import longest_edges
-from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs
+from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, sizes_of_discs
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
@@ -46,9 +46,10 @@ class Quality(NamedTuple):
     """How densely patches lie.
 
     A patch covers `share` times the least radius near it, at least `least` spacings.  With `selects` each chooses its
-    order and radius, else the samples near it do.  Patches are weighted by their risk to the power `-power`.  The
-    standard error is `calibration` times the root of the least risk: the noise is the least of many estimates, the fit
-    the one that looks best, and where samples choose, its bias is that of other places.
+    order and radius, else the samples near it do, except beside a boundary, where those of the interior are too bold.
+    Patches are weighted by their risk to the power `-power`.  The standard error is `calibration` times the root of the
+    least risk: the noise is the least of many estimates, the fit the one that looks best, and where samples choose, its
+    bias is that of other places.
     """
 
     share: float
@@ -128,8 +129,10 @@ def sectional(
     spread[mesh.topology.vertex_is_boundary] *= EDGE_CALIBRATION
     estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
     estimate.put(on_edge, ends)
+    _doubt_ends(mesh, estimate)
     if radius is None:
         _fill_in(mesh, estimate)
+        _doubt_ends(mesh, estimate)
     _flatten(estimate, _flat_vertices(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
@@ -142,19 +145,21 @@ def blended_patches(
     """K, H, risk, radius and order at the vertices of the sheet, principal directions, and variance of the noise."""
     low, high, top, noise = windows(samples)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
-    centres, sizes = cover(sheet, core)
+    centres = cover(sheet, core)
+    core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
     plane, choice = (chosen_at(centres, samples, logs) for logs in (samples.plane_logs, samples.torus_logs))
-    beside = at_edge[centres]
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
-    core, at_centres = core[centres], noise[centres]
-    if quality.selects:
-        frames = ladder.frames(sheet, centres, frames, _safe(choice, beside, ladder), tasks)
-        high = high + np.where(at_edge, EDGE_RADII, 0)
-        window = _widened(low[centres], high[centres], top[centres], len(ladder.reaches))
-        links = _like(members_of_discs(sheet, centres, centres, AROUND * core), beside)
-        choice = select(sheet, ladder, centres, frames, (*window, at_centres), links, PASSES, tasks)
+    window = _widened(low[centres], high[centres] + np.where(beside, EDGE_RADII, 0), top[centres], len(ladder.reaches))
+    if quality.selects or beside.any():
+        own: Any = slice(None) if quality.selects else np.flatnonzero(beside)
+        guess = _safe(Choice(choice.radius[own], choice.order[own], choice.risk[own]), beside[own], ladder)
+        frames[own] = ladder.frames(sheet, centres[own], frames[own], guess, tasks)
+        links = _like(members_of_discs(sheet, centres[own], centres[own], AROUND * core[own]), beside[own])
+        own_window = window[0][own], window[1][own], window[2][own], at_centres[own]
+        found = select(sheet, ladder, centres[own], frames[own], own_window, links, PASSES, tasks)
+        choice.radius[own], choice.order[own], choice.risk[own] = found
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
-    np.cumsum(sizes, out=rows[1:])
+    np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES))
     fitting = ladder.fitting(
         patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
@@ -235,6 +240,19 @@ def _spread_out(values: Floats, index: NDArray[np.intp], n: int) -> Floats:
     out = np.full((n, *values.shape[1:]), np.nan)
     out[index] = values
     return out
+
+
+def _doubt_ends(mesh: TriangleMesh, estimate: Estimate) -> None:
+    """Undefine curvatures at the boundary that no edge there can have: a chord is at most the diameter of its circle.
+
+    The few points on one side of a short boundary may lie almost on a line, and show any curvature then.
+    """
+    t, shortest = mesh.topology, np.full(mesh.n_vertices, np.inf)
+    lengths = np.linalg.norm(np.subtract(*mesh.vertices[t.edges.T]), axis=1)
+    np.minimum.at(shortest, t.edges.ravel(), np.repeat(lengths, 2))
+    at_ends = np.flatnonzero(t.vertex_is_boundary & np.isfinite(estimate.gaussian))
+    largest = np.maximum(np.abs(estimate.k1[at_ends]), np.abs(estimate.k2[at_ends]))  # type: ignore[index]
+    estimate.gaussian[at_ends[largest * shortest[at_ends] > 2.0]] = np.nan
 
 
 def _fill_in(mesh: TriangleMesh, estimate: Estimate) -> None:

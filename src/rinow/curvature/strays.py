@@ -37,9 +37,10 @@ def stray_vertices(mesh: TriangleMesh) -> tuple[Bools, Indices, Indices]:
     """
     is_stray = _fin_tips(mesh)
     L = mesh.edge_lengths
-    longest = L.max(axis=1, initial=0.0)
+    a, b, c = L.T
     with np.errstate(invalid="ignore"):
-        thin = np.flatnonzero(L.sum(axis=1) - 2.0 * longest <= ON_EDGE * longest)
+        longest = np.maximum(np.maximum(a, b), c)
+        thin = np.flatnonzero(a + b + c - 2.0 * longest <= ON_EDGE * longest)
     thin = thin[mesh.topology.face_used[thin]]
     thin = thin[np.all(L[thin] > 0.0, axis=1)]
     apex = np.argmax(L[thin], axis=1)

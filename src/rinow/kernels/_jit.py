@@ -9,11 +9,14 @@ from numba import prange
 
 from rinow.kernels._parallel import Parallel
 
-__all__ = ["inner", "kernel", "parallel_kernel", "prange"]
+__all__ = ["inlined", "inner", "kernel", "parallel_kernel", "prange"]
 
 POLICY = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 kernel = numba.njit(**POLICY)
+
+inlined = numba.njit(**POLICY, inline="always")
+"""For formulas in loops over many points: written in place of their calls, for loops with calls stay scalar code."""
 
 
 def inner(function):

@@ -16,6 +16,9 @@ OVERHANG = 0.3
 RISE, STEP = 0.8, 1.0
 """It also stops where the offset exceeds STEP spacings plus RISE times the distance: another sheet lies there."""
 
+LANES = 8
+"""Candidates are judged so many at a time, as vector code does; what the last ones lack is made up by old ones."""
+
 
 class Sheet(NamedTuple):
     """A surface as the fits see it, its vertices in an order that keeps neighbours together.
@@ -48,20 +51,20 @@ def ball(n_vertices, most):
     return Ball(
         np.zeros(n_vertices, np.int32),
         np.empty(most, np.int32),
-        np.empty(most, np.int32),
-        np.empty((6, most)),
+        np.empty(most + 1, np.int32),
+        np.zeros((6, most + LANES)),
         np.empty((4, most)),
     )
 
 
 @inner
-def gather(members, first, last, spacing, reach, epoch, sheet, work):
-    """Write the unseen neighbours of some members, not farther than `reach`, to the candidates; how many."""
-    vertices, normals = sheet.vertices, sheet.normals
-    raw, marks, v = work.raw, work.marks, members[0]
-    px, py, pz = vertices[v, 0], vertices[v, 1], vertices[v, 2]
-    scale, far = 1.0 / spacing, reach * reach * spacing * spacing
-    count = 0
+def find_unseen(members, first, last, epoch, sheet, work):
+    """Write the unseen neighbours of some members to the candidates; how many.
+
+    Whether a neighbour was seen is as good as random: no branch here depends on it.
+    """
+    marks, candidates = work.marks, work.candidates
+    most, count = len(candidates) - 1, 0
     for i in range(first, last):
         p = members[i]
         begin, end = sheet.offsets[p], sheet.offsets[p + 1]
@@ -69,16 +72,29 @@ def gather(members, first, last, spacing, reach, epoch, sheet, work):
             continue
         for k in range(begin, end):
             q = sheet.neighbours[k]
-            if marks[q] == epoch or count == len(work.candidates):
-                continue
-            marks[q] = epoch
-            x, y, z = vertices[q, 0] - px, vertices[q, 1] - py, vertices[q, 2] - pz
-            if x * x + y * y + z * z < far:
-                work.candidates[count] = q
-                raw[0, count], raw[1, count], raw[2, count] = x * scale, y * scale, z * scale
-                raw[3, count], raw[4, count], raw[5, count] = normals[q, 0], normals[q, 1], normals[q, 2]
-                count += 1
+            mark = marks[q]
+            is_new = (mark != epoch) & (count < most)
+            candidates[count] = q
+            marks[q] = epoch if is_new else mark
+            count += is_new
     return count
+
+
+@inner
+def keep_near(count, v, spacing, reach, sheet, work):
+    """Keep the candidates not farther than `reach` from v, and write positions and normals; how many."""
+    vertices, normals, raw, candidates = sheet.vertices, sheet.normals, work.raw, work.candidates
+    px, py, pz = vertices[v, 0], vertices[v, 1], vertices[v, 2]
+    scale, far = 1.0 / spacing, reach * reach * spacing * spacing
+    kept = 0
+    for i in range(count):
+        q = candidates[i]
+        x, y, z = vertices[q, 0] - px, vertices[q, 1] - py, vertices[q, 2] - pz
+        candidates[kept] = q
+        raw[0, kept], raw[1, kept], raw[2, kept] = x * scale, y * scale, z * scale
+        raw[3, kept], raw[4, kept], raw[5, kept] = normals[q, 0], normals[q, 1], normals[q, 2]
+        kept += x * x + y * y + z * z < far
+    return kept
 
 
 @inner
@@ -89,7 +105,7 @@ def judge(count, frame, spacing, is_oriented, work):
     ax, ay, az = frame[3], frame[4], frame[5]
     bx, by, bz = frame[6], frame[7], frame[8]
     k1, k2 = frame[9] * spacing, frame[10] * spacing
-    for i in range(count):
+    for i in range((count + LANES - 1) // LANES * LANES):
         x, y, z = raw[0, i], raw[1, i], raw[2, i]
         mx, my, mz = raw[3, i], raw[4, i], raw[5, i]
         u, v, w, c1, s1, c2, s2 = torus_coordinates(
@@ -116,7 +132,8 @@ def grow(v, frame, reach, epoch, sheet, work):
     work.marks[v] = epoch
     first, last = 0, 1
     while first < last:
-        count = gather(members, first, last, spacing, reach, epoch, sheet, work)
+        count = find_unseen(members, first, last, epoch, sheet, work)
+        count = keep_near(count, v, spacing, reach, sheet, work)
         judge(count, frame, spacing, sheet.is_oriented, work)
         n = last
         for i in range(count):

@@ -156,17 +156,17 @@ def _refute(problem, relation, queue, stack, depth):
     """Delete the pair decided last and its images under the isometries that fix the earlier decisions."""
     x, y = stack.decisions[depth, 0], stack.decisions[depth, 1]
     for i in range(problem.isometries_x.shape[0]):
-        if not _fixes(problem.isometries_x[i], stack.decisions, depth, 0):
+        if not fixes(problem.isometries_x[i], stack.decisions, depth, 0):
             continue
         image_x = problem.isometries_x[i, x]
         for j in range(problem.isometries_y.shape[0]):
             image_y = problem.isometries_y[j, y]
-            if contains(relation.rows[image_x], image_y) and _fixes(problem.isometries_y[j], stack.decisions, depth, 1):
+            if contains(relation.rows[image_x], image_y) and fixes(problem.isometries_y[j], stack.decisions, depth, 1):
                 delete(relation, queue, image_x, image_y)
 
 
 @kernel
-def _fixes(isometry, decisions, depth, side):
+def fixes(isometry, decisions, depth, side):
     """Whether an isometry leaves every decided point of its side in place."""
     for d in range(depth):
         if isometry[decisions[d, side]] != decisions[d, side]:

@@ -35,63 +35,60 @@ def shape_keys(vertices, offsets, neighbours, out):
 
 @inner
 def disc(v, radius, epoch, sheet, marks, members):
-    """Write the vertices within a distance of v, reached over such vertices; how many."""
+    """Write the vertices within a distance of v, reached over such vertices, to members (n + 1,); how many.
+
+    Which neighbours are new is as good as random: no branch depends on it.
+    """
     vertices, offsets, neighbours = sheet.vertices, sheet.offsets, sheet.neighbours
     members[0] = v
     marks[v] = epoch
-    done, n = 0, 1
+    far, done, n = radius * radius, 0, 1
     while done < n:
         p = members[done]
         for i in range(offsets[p], offsets[p + 1]):
             q = neighbours[i]
-            if marks[q] != epoch:
-                marks[q] = epoch
-                if stencils.squared_distance(vertices, v, q) < radius * radius:
-                    members[n] = q
-                    n += 1
+            mark = marks[q]
+            is_new = (mark != epoch) & (stencils.squared_distance(vertices, v, q) < far)
+            marks[q] = epoch if is_new else mark
+            members[n] = q
+            n += is_new
         done += 1
     return n
 
 
 @kernel
-def cover(candidates, radii, core, sheet, centres, sizes):
-    """Write each candidate that lies in the disc of no earlier one, and the size of `core` times its disc; how many."""
+def cover(candidates, radii, sheet, centres):
+    """Write each candidate that lies in the disc of no earlier one; how many."""
     n = len(sheet.vertices)
-    marks, members, is_covered = np.zeros(n, np.int32), np.empty(n, np.int32), np.zeros(n, np.bool_)
+    marks, members, is_covered = np.zeros(n, np.int32), np.empty(n + 1, np.int32), np.zeros(n, np.bool_)
     count = 0
     for v in candidates:
-        if is_covered[v]:
-            continue
-        size = disc(v, core * radii[v], count + 1, sheet, marks, members)
-        far = radii[v] * radii[v]
-        for i in range(size):
-            if stencils.squared_distance(sheet.vertices, v, members[i]) < far:
+        if not is_covered[v]:
+            centres[count] = v
+            count += 1
+            for i in range(disc(v, radii[v], count, sheet, marks, members)):
                 is_covered[members[i]] = True
-        centres[count], sizes[count] = v, size
-        count += 1
     return count
 
 
 @parallel_kernel
-def link(places, sources, radii, counts, starts, is_counting, n_blocks, sheet, links):
-    """Numbers of the targets in the disc of each source: their counts, or from starts[i] on their numbers in `links`.
+def link(places, sources, radii, starts, n_blocks, sheet, counts, links):
+    """Write the number of targets in the disc of each source, and their numbers to links[starts[i] : starts[i + 1]].
 
     places[v] is the number of the target at vertex v, or -1.
     """
     n, size = len(sources), len(sheet.vertices)
     for block in prange(n_blocks):
-        marks, members = np.zeros(size, np.int32), np.empty(size, np.int32)
+        marks, members = np.zeros(size, np.int32), np.empty(size + 1, np.int32)
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            m = disc(sources[i], radii[i], i + 1, sheet, marks, members)
-            k = 0
+            m, k, room = disc(sources[i], radii[i], i + 1, sheet, marks, members), 0, starts[i + 1] - starts[i]
             for j in range(m):
                 target = places[members[j]]
                 if target >= 0:
-                    if not is_counting:
+                    if k < room:
                         links[starts[i] + k] = target
                     k += 1
-            if is_counting:
-                counts[i] = k
+            counts[i] = k
 
 
 @parallel_kernel
@@ -111,22 +108,34 @@ def windows(starts, samples, radius, order, noise, low, high, top, sigma2):
         sigma2[v] = math.exp(total / count) if count else 0.0
 
 
+@inner
+def sum_logs(rows, logs, totals, counts):
+    """Write the sums of those rows of logs (m, k) that have a value in a column, and how many there are."""
+    totals[:], counts[:] = 0.0, 0.0
+    for row in rows:
+        log = logs[row]
+        for c in range(len(totals)):
+            is_known = not math.isnan(log[c])
+            totals[c] += log[c] if is_known else 0.0
+            counts[c] += 1.0 if is_known else 0.0
+
+
 @parallel_kernel
-def choices(vertices, starts, samples, logs, radius, order, risk):
-    """Write the radius and order of the least mean logarithmic risk among the samples near each vertex; -1 without."""
-    for i in prange(len(vertices)):
-        v = vertices[i]
-        best = np.inf
-        radius[i], order[i], risk[i] = -1, 0, np.inf
-        for j in range(logs.shape[1]):
-            for d in range(logs.shape[2]):
-                total, count = 0.0, 0
-                for k in range(starts[v], starts[v + 1]):
-                    x = logs[samples[k], j, d]
-                    if not math.isnan(x):
-                        total += x
-                        count += 1
-                missing = starts[v + 1] - starts[v] - count
-                if count > missing and total / count + missing < best:
-                    best = total / count + missing
-                    radius[i], order[i], risk[i] = j, d + 2, math.exp(total / count)
+def choices(vertices, starts, samples, logs, n_orders, n_blocks, radius, order, risk):
+    """Write the radius and order of the least mean logarithmic risk among the samples near each vertex; -1 without.
+
+    Column j n_orders + d of the logs belongs to the radius j and the order d + 2.
+    """
+    n = len(vertices)
+    for block in prange(n_blocks):
+        totals, counts = np.empty(logs.shape[1]), np.empty(logs.shape[1])
+        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            near = samples[starts[vertices[i]] : starts[vertices[i] + 1]]
+            sum_logs(near, logs, totals, counts)
+            best = np.inf
+            radius[i], order[i], risk[i] = -1, 0, np.inf
+            for c in range(logs.shape[1]):
+                missing, mean = len(near) - counts[c], totals[c] / max(counts[c], 1.0)
+                if counts[c] > missing and mean + missing < best:
+                    best = mean + missing
+                    radius[i], order[i], risk[i] = c // n_orders, c % n_orders + 2, math.exp(mean)

@@ -1,9 +1,9 @@
 """Greedy dives for relations between spaces of thousands of points: give partners one by one and look ahead.
 
-Every point of either space has a list of partners that agree to the level with all pairs made so far.  A dive takes the
-point with the shortest list for its weight, tries some partners, keeps the one that leaves the most to the others, and
-shortens the lists.  Points whose list runs empty are left over; too many of them end the dive.  Distances are in single
-precision: what a dive finds is measured in double.
+Every point of either space that takes part has a list of partners that agree to the level with all pairs made so far.
+A dive takes the point with the shortest list for its weight, tries some partners, keeps the one that leaves the most to
+the others, and shortens the lists.  Points whose list runs empty are left over; too many of them end the dive.
+Distances are in single precision: what a dive finds is measured in double.
 
 Place v < n stands for point v of X, place n + y for point y of Y.
 """
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
 from rinow.kernels.correspondence_tabu import random_below
 
 TRIALS = 16
@@ -21,8 +21,11 @@ TRIALS = 16
 WEIGHTED_ORPHANS = 8
 """Points left over whose weight grows for the next dive."""
 
-UNDECIDED, LEFT_OVER = -1, -2
-"""Marks in place of a partner."""
+UNDECIDED, LEFT_OVER, ABSENT = -1, -2, -3
+"""Marks in place of a partner: not yet given one, none possible, takes no part."""
+
+ORPHANS, OPEN = 0, 1
+"""Places in the numbers of a dive: points left over, points undecided."""
 
 
 class Dive(NamedTuple):
@@ -30,46 +33,36 @@ class Dive(NamedTuple):
 
     X: Any  # (n, n) float32
     Y: Any  # (m, m) float32
-    lists: Any  # (n + m, max(n, m)) int32: the first counts[v] entries of row v are possible partners
-    counts: Any  # (n + m,)
+    places: Any  # (k,): the places that look for a partner
+    lists: Any  # (k, max(n, m)) int32: the first counts[i] entries of row i are possible partners of places[i]
+    counts: Any  # (k,)
+    undecided: Any  # (k,): the first numbers[OPEN] entries are the rows of the places without partner
     partners: Any  # (n + m,)
-    first: Any  # places to begin with
     weights: Any  # (n + m,) float64
     random: Any  # (1,) uint64
-    orphans: Any  # (1,): number of points left over
+    numbers: Any  # (2,)
 
 
-@kernel
-def _list_partners_of(v, X, Y, possible, xs, ys, t, out):
-    """Write the partners of place v that are possible and agree with the given pairs; their number."""
-    n, m = possible.shape
-    k = 0
-    for w in range(m if v < n else n):
+@inner
+def _list_partners_of(v, X, Y, ex, ey, xs, ys, t, out):
+    """Write the partners of place v that agree in eccentricity and with the given pairs; their number."""
+    n, k = X.shape[0], 0
+    for w in range(Y.shape[0] if v < n else n):
         x, y = (v, w) if v < n else (w, v - n)
-        if possible[x, y] and _agrees(X[x], Y[y], xs, ys, t):
+        if abs(ex[x] - ey[y]) <= t and _agrees(X[x], Y[y], xs, ys, t):
             out[k] = w
             k += 1
     return k
 
 
 @parallel_kernel
-def list_partners(places, X, Y, possible, xs, ys, t, lists, counts):
-    """Fill the lists of the given places."""
+def list_partners(places, X, Y, ex, ey, xs, ys, t, lists, counts):
+    """Fill the lists of the given places; ex and ey are the eccentricities."""
     for i in prange(places.shape[0]):
-        v = places[i]
-        counts[v] = _list_partners_of(v, X, Y, possible, xs, ys, t, lists[v])
+        counts[i] = _list_partners_of(places[i], X, Y, ex, ey, xs, ys, t, lists[i])
 
 
-@kernel
-def begin(dive):
-    """Leave over the undecided points with an empty list."""
-    dive.orphans[0] = 0
-    for v in range(dive.partners.shape[0]):
-        if dive.partners[v] == UNDECIDED and dive.counts[v] == 0:
-            _leave_over(dive, v)
-
-
-@kernel
+@inner
 def _agrees(row_x, row_y, xs, ys, t):
     """Whether the pair of points with these distances agrees with all given ones."""
     for p in range(xs.shape[0]):
@@ -79,11 +72,23 @@ def _agrees(row_x, row_y, xs, ys, t):
 
 
 @kernel
+def begin(dive):
+    """Mark all places as undecided, but leave over those with an empty list."""
+    dive.numbers[ORPHANS], dive.numbers[OPEN] = 0, 0
+    for i in range(dive.places.shape[0]):
+        if dive.counts[i] == 0:
+            _leave_over(dive, dive.places[i])
+        else:
+            dive.undecided[dive.numbers[OPEN]] = i
+            dive.numbers[OPEN] += 1
+
+
+@inner
 def _leave_over(dive, v):
     """Mark a point without possible partner."""
     dive.partners[v] = LEFT_OVER
-    dive.orphans[0] += 1
-    if dive.orphans[0] <= WEIGHTED_ORPHANS:
+    dive.numbers[ORPHANS] += 1
+    if dive.numbers[ORPHANS] <= WEIGHTED_ORPHANS:
         dive.weights[v] += 1.0
 
 
@@ -92,10 +97,10 @@ def descend(dive, t, n_decisions, most_orphans):
     """Give partners to up to so many points; whether the dive goes on."""
     n, values = dive.X.shape[0], np.empty(TRIALS, np.int64)
     for _ in range(n_decisions):
-        v = _next_place(dive)
-        if v < 0:
+        if dive.numbers[OPEN] == 0:
             return False
-        n_values = _draw(dive, v, values)
+        i = _next_row(dive)
+        v, n_values = dive.places[i], _draw(dive, i, values)
         best, best_wiped, best_score = values[0], dive.partners.shape[0] + 1, -1.0
         if n_values > 1:
             for k in range(n_values):
@@ -103,52 +108,58 @@ def descend(dive, t, n_decisions, most_orphans):
                 wiped, score = _look_ahead(dive, x, y, t, best_wiped)
                 if wiped < best_wiped or (wiped == best_wiped and score > best_score):
                     best, best_wiped, best_score = values[k], wiped, score
-        x, y = (v, best) if v < n else (best, v - n)
-        dive.partners[v] = best
-        for place, partner in ((x, y), (n + y, x)):
-            if dive.partners[place] == UNDECIDED:
-                dive.partners[place] = partner
-        _shorten(dive, x, y, t)
-        if dive.orphans[0] > most_orphans:
+        _decide(dive, v, best, t)
+        if dive.numbers[ORPHANS] > most_orphans:
             return False
     return True
 
 
-@kernel
-def _next_place(dive):
-    """A point without partner: the first ones as listed, then the one with the shortest list for its weight; or -1."""
-    for k in range(dive.first.shape[0]):
-        if dive.partners[dive.first[k]] == UNDECIDED:
-            return dive.first[k]
+@inner
+def _decide(dive, v, partner, t):
+    """Give a place its partner, and shorten the lists of the others."""
+    n = dive.X.shape[0]
+    x, y = (v, partner) if v < n else (partner, v - n)
+    for place, other in ((x, y), (n + y, x)):
+        if dive.partners[place] < 0:
+            dive.partners[place] = other
+    _shorten(dive, x, y, t)
+
+
+@inner
+def _next_row(dive):
+    """The row of the place without partner that has the shortest list for its weight."""
     best, chosen = np.inf, -1
-    for v in range(dive.partners.shape[0]):
-        if dive.partners[v] == UNDECIDED and dive.counts[v] / dive.weights[v] < best:
-            best, chosen = dive.counts[v] / dive.weights[v], v
+    for u in range(dive.numbers[OPEN]):
+        i = dive.undecided[u]
+        if dive.counts[i] / dive.weights[dive.places[i]] < best:
+            best, chosen = dive.counts[i] / dive.weights[dive.places[i]], i
     return chosen
 
 
-@kernel
-def _draw(dive, v, values):
-    """Draw different partners from the list of a place; their number."""
-    count = dive.counts[v]
+@inner
+def _draw(dive, i, values):
+    """Draw different partners from row i of the lists; their number."""
+    count, listed = dive.counts[i], dive.lists[i]
     n_values = min(count, values.shape[0])
     for k in range(n_values):
         other = k + random_below(dive.random, count - k)
-        dive.lists[v, k], dive.lists[v, other] = dive.lists[v, other], dive.lists[v, k]
-        values[k] = dive.lists[v, k]
+        listed[k], listed[other] = listed[other], listed[k]
+        values[k] = listed[k]
     return n_values
 
 
-@kernel
+@inner
 def _look_ahead(dive, x, y, t, most_wiped):
     """How many lists the pair (x, y) would empty, and the sum of the logarithms of the other lengths."""
     n, wiped, score = dive.X.shape[0], 0, 0.0
-    for v in range(dive.partners.shape[0]):
-        if dive.partners[v] != UNDECIDED or v == x or v == n + y:
+    for u in range(dive.numbers[OPEN]):
+        i = dive.undecided[u]
+        v = dive.places[i]
+        if v == x or v == n + y:
             continue
         d, row = (dive.X[x, v], dive.Y[y]) if v < n else (dive.Y[y, v - n], dive.X[x])
-        left, listed = 0, dive.lists[v]
-        for k in range(dive.counts[v]):
+        left, listed = 0, dive.lists[i]
+        for k in range(dive.counts[i]):
             left += 1 if abs(d - row[listed[k]]) <= t else 0
         if left > 0:
             score += np.log(left)
@@ -159,22 +170,41 @@ def _look_ahead(dive, x, y, t, most_wiped):
     return wiped, score
 
 
-@kernel
+@inner
 def _shorten(dive, x, y, t):
     """Keep the partners that agree with the pair (x, y); points without any are left over."""
-    n = dive.X.shape[0]
-    for v in range(dive.partners.shape[0]):
+    n, still = dive.X.shape[0], 0
+    for u in range(dive.numbers[OPEN]):
+        i = dive.undecided[u]
+        v = dive.places[i]
         if dive.partners[v] != UNDECIDED:
             continue
         d, row = (dive.X[x, v], dive.Y[y]) if v < n else (dive.Y[y, v - n], dive.X[x])
-        left, listed = 0, dive.lists[v]
-        for k in range(dive.counts[v]):
+        left, listed = 0, dive.lists[i]
+        for k in range(dive.counts[i]):
             if abs(d - row[listed[k]]) <= t:
                 listed[left] = listed[k]
                 left += 1
-        dive.counts[v] = left
+        dive.counts[i] = left
         if left == 0:
             _leave_over(dive, v)
+        else:
+            dive.undecided[still] = i
+            still += 1
+    dive.numbers[OPEN] = still
+
+
+@parallel_kernel
+def many_dives(
+    X, Y, places, first_lists, first_counts, t, most, lists, counts, undecided, partners, weights, random, numbers
+):
+    """Dives for the same places from the same lists, each with its own random numbers."""
+    for k in prange(lists.shape[0]):
+        lists[k] = first_lists
+        counts[k] = first_counts
+        dive = Dive(X, Y, places, lists[k], counts[k], undecided[k], partners[k], weights[k], random[k], numbers[k])
+        begin(dive)
+        descend(dive, t, places.shape[0], most)
 
 
 @kernel
@@ -192,17 +222,6 @@ def best_partner(row, other, own_places, other_places, n_pairs):
         if worst < best:
             best, chosen = worst, w
     return chosen
-
-
-@kernel
-def pairs_made(dive, xs, ys):
-    """Write the pairs of the points that have a partner; their number."""
-    n, n_pairs = dive.X.shape[0], 0
-    for v in range(dive.partners.shape[0]):
-        if dive.partners[v] >= 0:
-            xs[n_pairs], ys[n_pairs] = (v, dive.partners[v]) if v < n else (dive.partners[v], v - n)
-            n_pairs += 1
-    return n_pairs
 
 
 @parallel_kernel

@@ -5,17 +5,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rinow.kernels._jit import inner
+from rinow.kernels._jit import inlined, inner
 
 MAX_ORDER = 8
 N_ORDERS = MAX_ORDER - 1
 """Orders 2..8."""
-WIDTH = 20
-"""Columns of the table of moments, whose first 2 * MAX_ORDER + 1 are used."""
+WIDTH = 2 * MAX_ORDER + 1
+"""Degrees of the moments, from 0 on."""
+AT_ONCE = 4
+"""Points added to moments, and rows subtracted from another one, in one go: rows are short, loops over them many."""
 TERMS = (1, 3, 6, 10, 15, 21, 28, 36, 45)
 """Number of monomials of degree at most d."""
 V_POWERS = np.array([b for d in range(MAX_ORDER + 1) for b in range(d + 1)])
-U_POWERS = np.array([d - b for d in range(MAX_ORDER + 1) for b in range(d + 1)])
+DEGREES = np.array([d for d in range(MAX_ORDER + 1) for b in range(d + 1)])
 PIVOT = 2e-6
 """A monomial depends on earlier ones when this share of its squared norm is left.  A smaller share would admit fits
 that nearly interpolate: precise and wrong."""
@@ -24,14 +26,21 @@ SPARE, SURPLUS = 2, 1.25
 
 
 class Fits(NamedTuple):
-    """Work space of one thread."""
+    """Work space of one thread.
+
+    moments[ball, b, a] and offsets[ball, b, a] are the sums of u^a v^b and of w u^a v^b, `sums` and `offset_sums` those
+    of one ball by degree.  Of the points still to be added `powers` has u^a and `places` has v and w.
+    """
 
     moments: np.ndarray
     offsets: np.ndarray
+    powers: np.ndarray
+    places: np.ndarray
     counts: np.ndarray
     squares: np.ndarray
+    sums: np.ndarray
+    offset_sums: np.ndarray
     factor: np.ndarray
-    diagonal: np.ndarray
     jets: np.ndarray
     covariances: np.ndarray
     residuals: np.ndarray
@@ -44,25 +53,48 @@ def fits(n_shells):
     return Fits(
         np.zeros((n_shells, WIDTH, WIDTH)),
         np.zeros((n_shells, MAX_ORDER + 1, MAX_ORDER + 1)),
+        np.zeros((n_shells, AT_ONCE, WIDTH)),
+        np.zeros((n_shells, AT_ONCE, 2)),
         np.zeros(n_shells),
         np.zeros(n_shells),
-        np.zeros((p, p + 8)),
-        np.zeros(p),
+        np.zeros((WIDTH, WIDTH)),
+        np.zeros((MAX_ORDER + 1, MAX_ORDER + 1)),
+        np.zeros((p, p + 7)),
         np.zeros((MAX_ORDER + 1, 6)),
         np.zeros((MAX_ORDER + 1, 6)),
         np.zeros(MAX_ORDER + 1),
     )
 
 
+@inlined
+def add_products(first, powers, factors, order, sums):
+    """Add to sums[b, a] the products first v^b u^a of AT_ONCE points with powers u^a and factors v."""
+    p0, p1, p2, p3 = powers[0], powers[1], powers[2], powers[3]
+    y0, y1, y2, y3 = first
+    for b in range(order + 1):
+        row = sums[b]
+        for a in range(order + 1 - b):
+            row[a] += (y0 * p0[a] + y1 * p1[a]) + (y2 * p2[a] + y3 * p3[a])
+        y0, y1, y2, y3 = y0 * factors[0, 0], y1 * factors[1, 0], y2 * factors[2, 0], y3 * factors[3, 0]
+
+
+@inlined
+def add_points(shell, order, work):
+    """Add the points that wait to the moments of a shell."""
+    powers, places = work.powers[shell], work.places[shell]
+    add_products((1.0, 1.0, 1.0, 1.0), powers, places, 2 * order, work.moments[shell])
+    w = (places[0, 1], places[1, 1], places[2, 1], places[3, 1])
+    add_products(w, powers, places, order, work.offsets[shell])
+
+
 @inner
 def add_moments(points, n, reaches, order, work):
-    """Sums of u^a v^b over the points of each ball to moments[ball, b, a], of w u^a v^b to offsets[ball, b, a]."""
+    """Write the moments and offsets of each ball, the number of its points and the sum of w^2."""
     n_shells, top = len(reaches), 2 * order + 1
     moments, offsets, counts, squares = work.moments, work.offsets, work.counts, work.squares
     moments[:n_shells, :top, :top] = 0.0
     offsets[:n_shells, : order + 1, : order + 1] = 0.0
     counts[:n_shells], squares[:n_shells] = 0.0, 0.0
-    powers = np.ones(WIDTH)
     for i in range(n):
         u, v, w, q = points[0, i], points[1, i], points[2, i], points[3, i]
         shell = 0
@@ -70,31 +102,26 @@ def add_moments(points, n, reaches, order, work):
             shell += 1
         if shell == n_shells:
             continue
+        place = int(counts[shell]) % AT_ONCE
         counts[shell] += 1.0
         squares[shell] += w * w
-        for a in range(1, top):
-            powers[a] = powers[a - 1] * u
-        y = 1.0
-        for b in range(top):
-            row = moments[shell, b]
-            for a in range(top - b):
-                row[a] += y * powers[a]
-            y *= v
-        y = w
-        for b in range(order + 1):
-            row = offsets[shell, b]
-            for a in range(order + 1 - b):
-                row[a] += y * powers[a]
-            y *= v
-    for shell in range(1, n_shells):
-        counts[shell] += counts[shell - 1]
-        squares[shell] += squares[shell - 1]
-        for b in range(top):
-            for a in range(top - b):
-                moments[shell, b, a] += moments[shell - 1, b, a]
-        for b in range(order + 1):
-            for a in range(order + 1 - b):
-                offsets[shell, b, a] += offsets[shell - 1, b, a]
+        powers, x = work.powers[shell, place], 1.0
+        for a in range(top):
+            powers[a] = x
+            x *= u
+        work.places[shell, place, 0], work.places[shell, place, 1] = v, w
+        if place == AT_ONCE - 1:
+            add_points(shell, order, work)
+    for shell in range(n_shells):
+        last = int(counts[shell]) % AT_ONCE
+        if last > 0:
+            work.powers[shell, last:] = 0.0
+            add_points(shell, order, work)
+        if shell > 0:
+            counts[shell] += counts[shell - 1]
+            squares[shell] += squares[shell - 1]
+            moments[shell, :top, :top] += moments[shell - 1, :top, :top]
+            offsets[shell, : order + 1, : order + 1] += offsets[shell - 1, : order + 1, : order + 1]
 
 
 @inner
@@ -105,24 +132,41 @@ def highest_order(count, order):
     return order
 
 
-@inner
-def fill(shell, reach, order, work):
-    """Write the normal equations in coordinates over `reach`; columns after the monomials: units 0..5 and the data."""
-    p = TERMS[order]
-    scales = np.ones(2 * MAX_ORDER + 1)
-    for k in range(1, 2 * order + 1):
-        scales[k] = scales[k - 1] / reach
-    moments, offsets, factor = work.moments[shell], work.offsets[shell], work.factor
-    for i in range(p):
-        ui, vi = U_POWERS[i], V_POWERS[i]
-        for d in range(ui + vi, order + 1):
-            scale, first = scales[ui + vi + d], TERMS[d] - d - 1
-            for b in range(vi if d == ui + vi else 0, d + 1):
-                factor[i, first + b] = moments[vi + b, ui + d - b] * scale
-        for k in range(6):
-            factor[i, p + k] = 1.0 if i == k else 0.0
-        factor[i, p + 6] = offsets[vi, ui] * scales[ui + vi]
-        work.diagonal[i] = factor[i, i]
+@inlined
+def sort_by_degree(moments, reach, last, sums):
+    """Write the moments of degree up to `last`, in coordinates over `reach`, to sums[degree, b]."""
+    scale = 1.0
+    for d in range(last + 1):
+        for b in range(d + 1):
+            sums[d, b] = moments[b, d - b] * scale
+        scale /= reach
+
+
+@inlined
+def write_equation(i, order, work):
+    """Write a row of the normal equations; the columns after the monomials are the units 0..5 and the data."""
+    factor, p, v, degree = work.factor, TERMS[order], V_POWERS[i], DEGREES[i]
+    for j in range(i, p):
+        factor[i, j] = work.sums[degree + DEGREES[j], v + V_POWERS[j]]
+    for k in range(6):
+        factor[i, p + k] = 1.0 if i == k else 0.0
+    factor[i, p + 6] = work.offset_sums[degree, v]
+
+
+@inlined
+def subtract_earlier(k, end, factor):
+    """Subtract from row k of the equations what the earlier rows of the factor explain."""
+    row, n = factor[k, k:end], end - k  # slices: loops from 0 on become vector code
+    for m in range(0, k - AT_ONCE + 1, AT_ONCE):
+        a, b, c, d = factor[m, k:end], factor[m + 1, k:end], factor[m + 2, k:end], factor[m + 3, k:end]
+        fa, fb, fc, fd = a[0], b[0], c[0], d[0]
+        for j in range(n):
+            row[j] -= (fa * a[j] + fb * b[j]) + (fc * c[j] + fd * d[j])
+    for m in range(k // AT_ONCE * AT_ONCE, k):
+        a = factor[m, k:end]
+        fa = a[0]
+        for j in range(n):
+            row[j] -= fa * a[j]
 
 
 @inner
@@ -133,22 +177,22 @@ def fit_orders(shell, reach, order, work):
     columns beside it turn into the rows z and y for which the coefficient c of order d is the sum of z_kc y_k, its
     covariance the sum of z_ka z_kb and the explained square the sum of y_k^2 over the monomials k of order d.
     """
-    fill(shell, reach, order, work)
+    sort_by_degree(work.moments[shell], reach, 2 * order, work.sums)
+    sort_by_degree(work.offsets[shell], reach, order, work.offset_sums)
     factor, p = work.factor, TERMS[order]
     c0 = c1 = c2 = c3 = c4 = c5 = v33 = v34 = v35 = v44 = v45 = v55 = 0.0
     left = work.squares[shell]
     degree = 0
     for k in range(p):
-        if not factor[k, k] > PIVOT * work.diagonal[k]:
-            return degree - 1
-        inverse = 1.0 / math.sqrt(factor[k, k])
         row = factor[k]
-        for j in range(k, p + 7):
-            row[j] *= inverse
-        for i in range(k + 1, p):
-            below, f = factor[i], row[i]
-            for j in range(i, p + 7):
-                below[j] -= f * row[j]
+        write_equation(k, order, work)
+        norm = row[k]
+        subtract_earlier(k, p + 7, factor)
+        if not row[k] > PIVOT * norm:
+            return degree - 1
+        inverse, rest = 1.0 / math.sqrt(row[k]), factor[k, k : p + 7]
+        for j in range(len(rest)):
+            rest[j] *= inverse
         y, z3, z4, z5 = row[p + 6], row[p + 3], row[p + 4], row[p + 5]
         c0, c1, c2, c3 = c0 + row[p] * y, c1 + row[p + 1] * y, c2 + row[p + 2] * y, c3 + z3 * y
         c4, c5, left = c4 + z4 * y, c5 + z5 * y, left - y * y
@@ -166,6 +210,23 @@ def fit_orders(shell, reach, order, work):
             work.residuals[degree] = max(left, 0.0)
             degree += 1
     return order
+
+
+@inner
+def bend_variance(u, v, reach, order, work, z):
+    """Sum of the variances of the second derivatives of a fit at (u, v), for noise of variance 1; z is (3, 45)."""
+    x, y, total, factor = u / reach, v / reach, 0.0, work.factor
+    for k in range(TERMS[order]):
+        a, b = DEGREES[k] - V_POWERS[k], V_POWERS[k]
+        z[0, k] = a * (a - 1) * x ** max(a - 2, 0) * y**b
+        z[1, k] = a * b * x ** max(a - 1, 0) * y ** max(b - 1, 0)
+        z[2, k] = b * (b - 1) * x**a * y ** max(b - 2, 0)
+        for c in range(3):
+            for i in range(k):
+                z[c, k] -= factor[i, k] * z[c, i]
+            z[c, k] *= factor[k, k]
+            total += z[c, k] * z[c, k]
+    return total / reach**4
 
 
 @inner

@@ -9,13 +9,13 @@ circle is w = 0.
 
 import math
 
-from rinow.kernels._jit import inner
+from rinow.kernels._jit import inlined, inner
 
 LARGEST_TURN = math.cos(1.9)
 """Cosine of the largest angle of either arc."""
 
 
-@inner
+@inlined
 def arc(x, a, k):
     """Length of the arc of curvature k whose angle has the sine k x / m and the cosine a / m, m^2 = (k x)^2 + a^2.
 
@@ -35,7 +35,7 @@ def arc(x, a, k):
     return 8.0 * t * p
 
 
-@inner
+@inlined
 def torus_coordinates(x, y, z, k1, k2):
     """(u1, u2, w) of the point x d1 + y d2 + z n, and cosines and sines of the two angles."""
     a = 1.0 - k1 * z
@@ -47,17 +47,24 @@ def torus_coordinates(x, y, z, k1, k2):
     return arc(x, a, k1), arc(y, b, k2), w, a / m, k1 * x / m, b / l, k2 * y / l
 
 
-@inner
-def offset_forms(u2, k1, k2, f, f1, f2, f11, f12, f22):
+@inlined
+def arc_place(u, k):
+    """Cosine and sine of the angle of an arc of length u, and its height over the tangent at its beginning."""
+    t = k * u
+    s, c = math.sin(0.5 * t), math.cos(0.5 * t)
+    sagitta = 2.0 * s * s / k if abs(t) > 1e-9 else 0.5 * k * u * u
+    return 1.0 - 2.0 * s * s, 2.0 * s * c, sagitta
+
+
+@inlined
+def offset_forms(place, k1, k2, f, f1, f2, f11, f12, f22):
     """First and second fundamental form of w = f(u1, u2): g11, g12, g22, L, M, N, and the volume sqrt(det g).
 
-    By symmetry only the second arc matters.  The frame is that of the torus at (u1, u2), its normal the third axis;
-    X_i are the tangents, L, M, N the products of the second derivatives of X with the unit normal.
+    By symmetry only the second arc matters, of which `place` is the `arc_place`.  The frame is that of the torus at
+    (u1, u2), its normal the third axis; X_i are the tangents, L, M, N the products of the second derivatives of X with
+    the unit normal.
     """
-    t = k2 * u2
-    cos, sin = math.cos(t), math.sin(t)
-    half = math.sin(0.5 * t)
-    sagitta = 2.0 * half * half / k2 if abs(t) > 1e-9 else 0.5 * k2 * u2 * u2
+    cos, sin, sagitta = place
     e1, e2 = 1.0 - k1 * (sagitta + f * cos), 1.0 - k2 * f
     g11, g12, g22 = e1 * e1 + f1 * f1, f1 * f2, e2 * e2 + f2 * f2
     nx, ny, nz = -f1 * e2, -e1 * f2, e1 * e2

@@ -37,7 +37,7 @@ class Tables(NamedTuple):
 @inner
 def forms_at_centre(jet, k1, k2):
     """`offset_forms` at u = 0."""
-    return offset_forms(0.0, k1, k2, jet[0], jet[1], jet[2], jet[3], jet[4], jet[5])
+    return offset_forms((1.0, 0.0, 0.0), k1, k2, jet[0], jet[1], jet[2], jet[3], jet[4], jet[5])
 
 
 @inner

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import monge, nested_fits, stencils
-from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
-from rinow.kernels.nested_fits import MAX_ORDER, TERMS, U_POWERS, V_POWERS
-from rinow.kernels.osculating_torus import offset_forms, torus_frame
+from rinow.kernels._jit import inlined, inner, kernel, parallel_kernel, prange
+from rinow.kernels.nested_fits import TERMS
+from rinow.kernels.osculating_torus import arc_place, offset_forms, torus_frame
 from rinow.kernels.patch_fits import STEEP, curvature_and_gradients, forms_at_centre
 
 STEEP_CORE = 0.6
@@ -17,6 +17,8 @@ SHARP = 2.0
 """Curvature, over the inverse spacing, that no mesh resolves: beyond it a fit has failed."""
 FALLEN = 1e-6
 """Weight of a fit whose order had to be lowered."""
+ROOMY, LOOSE = 2.0, 10.0
+"""Points over unknowns below which a fit may be loose beside its centre: more than so many times the variance there."""
 SYMMETRIC = 1.5
 """Largest ratio of variances of stencils that count as symmetric."""
 N_VALUES = 15
@@ -83,29 +85,29 @@ def write_frame(jet, spacing, frame, out):
     out[9], out[10] = (0.0, 0.0) if flat else (first / spacing, second / spacing)
 
 
-@inner
+@inlined
 def polynomial(coefficients, order, reach, u, v):
-    """Value, first and second derivatives at (u, v) of a polynomial in coordinates over `reach`."""
+    """Value, first and second derivatives at (u, v) of a polynomial in coordinates over `reach`, after Horner."""
     f = f1 = f2 = f11 = f12 = f22 = 0.0
     x, y = u / reach, v / reach
-    px, py = np.ones(MAX_ORDER + 1), np.ones(MAX_ORDER + 1)
-    for k in range(1, order + 1):
-        px[k], py[k] = px[k - 1] * x, py[k - 1] * y
-    for i in range(TERMS[order]):
-        a, b, c = U_POWERS[i], V_POWERS[i], coefficients[i]
-        f += c * px[a] * py[b]
-        if a > 0:
-            f1 += c * a * px[a - 1] * py[b]
-        if b > 0:
-            f2 += c * b * px[a] * py[b - 1]
-        if a > 1:
-            f11 += c * a * (a - 1) * px[a - 2] * py[b]
-        if a > 0 and b > 0:
-            f12 += c * a * b * px[a - 1] * py[b - 1]
-        if b > 1:
-            f22 += c * b * (b - 1) * px[a] * py[b - 2]
+    for b in range(order, -1, -1):
+        g = g1 = g2 = 0.0  # the factor of y^b, half its second derivative last
+        for d in range(order, b - 1, -1):
+            g2, g1, g = g2 * x + g1, g1 * x + g, g * x + coefficients[TERMS[d] - d - 1 + b]
+        f22, f2, f = f22 * y + f2, f2 * y + f, f * y + g
+        f12, f1, f11 = f12 * y + f1, f1 * y + g1, f11 * y + g2
     s = 1.0 / (reach * reach)
-    return f, f1 / reach, f2 / reach, f11 * s, f12 * s, f22 * s
+    return f, f1 / reach, f2 / reach, 2.0 * f11 * s, f12 * s, 2.0 * f22 * s
+
+
+@inlined
+def in_space(frame, x, y, z):
+    """The vector x d1 + y d2 + z n."""
+    return (
+        x * frame[3] + y * frame[6] + z * frame[0],
+        x * frame[4] + y * frame[7] + z * frame[1],
+        x * frame[5] + y * frame[8] + z * frame[2],
+    )
 
 
 @inner
@@ -115,36 +117,30 @@ def write_values(u, v, jet, frame, spacing, out):
     if not f1 * f1 + f2 * f2 <= STEEP_CORE:
         return False
     k1, k2 = frame[9] * spacing, frame[10] * spacing
-    g11, g12, g22, l, m, n, volume = offset_forms(v, k1, k2, f, f1, f2, f11, f12, f22)
+    place = arc_place(v, k2)
+    g11, g12, g22, l, m, n, volume = offset_forms(place, k1, k2, f, f1, f2, f11, f12, f22)
     gaussian = (l * n - m * m) / (volume * volume)
     mean = 0.5 * (g22 * l - 2.0 * g12 * m + g11 * n) / (volume * volume)
     if not (abs(mean) < SHARP and abs(gaussian) < SHARP * SHARP):
         return False
     out[1], out[2] = gaussian / (spacing * spacing), mean / spacing
-    a, b, normal = torus_frame(math.cos(k1 * u), math.sin(k1 * u), math.cos(k2 * v), math.sin(k2 * v))
     e1, e2 = math.sqrt(max(g11 - f1 * f1, 0.0)), 1.0 - k2 * f
+    a, b, up = torus_frame(math.cos(k1 * u), math.sin(k1 * u), place[0], place[1])
+    p, q, r = -f1 * e2 / volume, -e1 * f2 / volume, e1 * e2 / volume
+    normal = in_space(
+        frame, p * a[0] + q * b[0] + r * up[0], p * a[1] + q * b[1] + r * up[1], p * a[2] + q * b[2] + r * up[2]
+    )
+    p, r = e1 / math.sqrt(g11), f1 / math.sqrt(g11)
+    tangent = in_space(frame, p * a[0] + r * up[0], p * a[1] + r * up[1], p * a[2] + r * up[2])
+    across = monge.cross(normal, tangent)
     s11, s12, s22 = shape_in_frame(g11, g12, g22, l, m, n, volume)
-    first, second, cos, sin = principal(s11, s12, s22)
-    nx, ny, nz = -f1 * e2, -e1 * f2, e1 * e2
-    cx, cy, cz = ny * f1, nz * e1 - nx * f1, -ny * e1
-    t, c = math.sqrt(g11), math.sqrt(cx * cx + cy * cy + cz * cz)
-    p, q = cos / t, sin / c
-    x1, y1, z1 = p * e1 + q * cx, q * cy, p * f1 + q * cz
-    p, q = -sin / t, cos / c
-    x2, y2, z2 = p * e1 + q * cx, q * cy, p * f1 + q * cz
-    one, two, up = np.empty(3), np.empty(3), np.empty(3)
-    for k in range(3):
-        ek = a[0] * frame[3 + k] + a[1] * frame[6 + k] + a[2] * frame[k]
-        fk = b[0] * frame[3 + k] + b[1] * frame[6 + k] + b[2] * frame[k]
-        nk = normal[0] * frame[3 + k] + normal[1] * frame[6 + k] + normal[2] * frame[k]
-        one[k], two[k] = x1 * ek + y1 * fk + z1 * nk, x2 * ek + y2 * fk + z2 * nk
-        up[k] = (nx * ek + ny * fk + nz * nk) / volume
     i = 5
     for j in range(3):
         for k in range(j, 3):
-            out[i] = (first * one[j] * one[k] + second * two[j] * two[k]) / spacing
+            mixed = tangent[j] * across[k] + across[j] * tangent[k]
+            out[i] = (s11 * tangent[j] * tangent[k] + s12 * mixed + s22 * across[j] * across[k]) / spacing
             i += 1
-    out[11], out[12], out[13] = up
+    out[11], out[12], out[13] = normal
     return True
 
 
@@ -166,10 +162,13 @@ def chosen_order(wanted, top, fit):
 
 
 @inner
-def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values):
+def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, fit, sheet, ball, vertices, values):
     """Write the weighted values of one patch at the vertices nearer than patch.core spacings to its centre."""
     k, centre, points = start, ball.members[0], ball.points
+    c, room = fit.covariances[order], np.empty((3, TERMS[-1]))
+    at_centre, is_crowded = c[0] + c[3] + c[5], size < ROOMY * TERMS[order]
     spacing, core = sheet.spacing[centre], patch.core
+    most = patch.risk ** (-patch.power) * (1.0 if order >= patch.order else FALLEN)
     for j in range(size):
         u, v, q = points[0, j], points[1, j], ball.members[j]
         s = (u * u + v * v) / (core * core)
@@ -178,13 +177,17 @@ def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch
         out = values[k]
         if not write_values(u, v, polynomial(coefficients, order, reach, u, v), frame, spacing, out):
             continue
-        weight = (1.0 - s) ** 2 * patch.risk ** (-patch.power) * (1.0 if order >= patch.order else FALLEN)
+        weight = (1.0 - s) ** 2 * most
+        gain = nested_fits.bend_variance(u, v, reach, order, fit, room) / at_centre if is_crowded else 1.0
+        risk = patch.risk * max(gain, 1.0)
+        if gain > LOOSE:
+            weight *= FALLEN
         sign = 1.0
         if not sheet.is_oriented:
             dot = out[11] * sheet.normals[q, 0] + out[12] * sheet.normals[q, 1] + out[13] * sheet.normals[q, 2]
             sign = 1.0 if dot >= 0.0 else -1.0
         out[1] -= bias
-        out[3], out[4], out[14] = patch.risk, reach * spacing, order
+        out[3], out[4], out[14] = risk, reach * spacing, order
         out[0] = weight
         for m in range(1, N_VALUES):
             out[m] *= weight * (sign if m == 2 or 5 <= m < 14 else 1.0)
@@ -201,7 +204,7 @@ def write_patch(start, stop, size, top, asked, reach, frame, patch, fit, sheet, 
     factor = curvature_and_gradients(fit.jets[order], frame[9] * spacing, frame[10] * spacing)[4]
     c = fit.covariances[order]
     bias = patch.noise / spacing**4 * factor * (c[2] - c[3])  # the mean of f11 f22 - f12^2 over the noise
-    write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values)
+    write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, fit, sheet, ball, vertices, values)
 
 
 @kernel
