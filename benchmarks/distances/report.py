@@ -12,8 +12,7 @@ from typing import Any
 Row = dict[str, Any]
 HEAD = """# Gromov-Hausdorff and Lipschitz distance: what closes, and how fast
 
-Written by `python benchmarks/bench_gromov_hausdorff.py --page`; do not edit.  Machine: {machine}, in use by other jobs
-at the same time, so that the seconds are rather too long.
+Written by `python benchmarks/bench_gromov_hausdorff.py --page`; do not edit.  Machine: {machine}.
 
 Random instances, one for each seed.  "Exact" counts those whose interval is closed within the limit; the gap is the
 largest upper / lower of all seeds.  Seconds are the median and the longest.  What is not closed is listed with

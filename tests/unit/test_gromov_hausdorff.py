@@ -19,6 +19,7 @@ from rinow.comparison.engine import Engine
 from rinow.comparison.gromov_hausdorff import first_interval
 from rinow.comparison.level_search import LevelSearch
 from rinow.comparison.levels import Levels
+from rinow.comparison.relaxation import relaxed_maps
 from rinow.comparison.symmetry import isometries
 from rinow.errors import InvalidInputError, NotAMetricError
 
@@ -127,6 +128,30 @@ def test_noisy_shuffled_copy():
     result = gromov_hausdorff(X, Y)
     assert result.exact
     assert result.upper < 0.02  # twice the largest of 160 normal deviates
+
+
+def test_relaxed_maps_find_noisy_copies_of_spaces_without_coordinates():
+    """From both starts together, in at least one of two copies; tabu search alone finds neither."""
+    found = 0
+    for seed in (0, 1):
+        rng = np.random.default_rng(seed + 300)
+        D, noise = rng.uniform(0.5, 1.0, (60, 60)), rng.uniform(0.0, 0.01, (60, 60))
+        D = squareform(squareform(D, checks=False))
+        copy = squareform(squareform(D + noise, checks=False))
+        order = rng.permutation(60)
+        copy = np.clip(copy, 0.5, 1.0)[np.ix_(order, order)]
+        np.fill_diagonal(copy, 0.0)
+        maps = relaxed_maps(D, copy, Engine(D, copy).row_levels, Clock(math.inf))
+        found += any(distortion(np.stack([np.arange(60), f], axis=1), D, copy) <= 0.01 for f, _ in maps)
+    assert found >= 1
+
+
+def test_relaxed_maps_of_unequal_and_coincident_points():
+    X, Y = segment(3, 2.0), np.zeros((5, 5))
+    for f, g in relaxed_maps(X, Y, np.zeros((3, 5)), Clock(math.inf)):
+        assert f.shape == (3,) and g.shape == (5,)
+        assert len(set(f.tolist())) == 3
+    assert not list(relaxed_maps(X, Y, np.zeros((3, 5)), Clock(0.0)))
 
 
 def test_scaling_and_isometry():

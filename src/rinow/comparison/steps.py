@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, RELATION, Engine, Search
 from rinow.comparison.interval import Interval
 from rinow.comparison.level_search import LevelSearch
+from rinow.comparison.relaxation import relaxed_maps
 from rinow.comparison.satisfiability import Satisfiability, solver_installed
 from rinow.comparison.symmetry import Isometries, isometries
 from rinow.comparison.warm_start import BijectionTabu, RelationTabu, TabuSearch
@@ -25,6 +27,9 @@ Symmetries = tuple[Isometries, Isometries]
 
 STARTS, MOVES = 12, 40
 """Tabu searches before the exact one, and moves of each for every point."""
+
+RELAXATION = 0.3
+"""Most of the time of the tabu searches for relaxed maps."""
 
 PROOF = 0.25
 """Share of the time of the tabu searches for a proof that the first one found the best."""
@@ -68,13 +73,13 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
 
 
 def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: float = 0.0) -> None:
-    """Tabu search from several starts: the rows that agree best and the best relation so far, then random maps.
+    """Tabu search from several starts: rows that agree best, the best relation so far, relaxed maps, then random ones.
 
     Nearly isometric spaces are done after the first: arc consistency refutes what is below.  Where levels are few they
     are met one by one afterwards.
     """
     rng = np.random.default_rng(20)
-    for k, search in enumerate(_searches(engine, rng, interval)):
+    for k, search in enumerate(_searches(engine, rng, interval, clock)):
         search.run(MOVES * sum(engine.shape), clock, max(target, interval.lower))
         interval.offer(search.pairs, search.best)
         if interval.upper <= target:
@@ -87,21 +92,24 @@ def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: floa
             return
 
 
-def _searches(engine: Engine, rng: np.random.Generator, interval: Interval) -> Iterator[TabuSearch]:
+def _searches(engine: Engine, rng: np.random.Generator, interval: Interval, clock: Clock) -> Iterator[TabuSearch]:
     """Tabu searches without end."""
-    (n, m), levels, seed = engine.shape, engine.row_levels, 0
+    (n, m), levels, DX, DY = engine.shape, engine.row_levels, engine.DX, engine.DY
+    relaxed = relaxed_maps(DX, DY, np.minimum(levels, 1e100), clock.part(RELAXATION * clock.left))
     if engine.kind == BIJECTION:
-        f = linear_sum_assignment(np.log(np.minimum(levels, 1e100)))[1]
-        while True:
-            yield BijectionTabu(engine.DX, engine.DY, f, seed)
-            f, seed = rng.permutation(n), seed + 1
-    f, g = levels.argmin(axis=1), levels.argmin(axis=0)
-    starts = [RelationTabu(engine.DX, engine.DY, *maps, k) for k, maps in enumerate(((f, g), _maps(engine, interval)))]
-    yield from sorted(starts, key=lambda search: search.best)
-    f, g, seed = rng.integers(m, size=n), rng.integers(n, size=m), len(starts)
-    while True:
-        yield RelationTabu(engine.DX, engine.DY, f, g, seed)
-        f, g, seed = rng.integers(m, size=n), rng.integers(n, size=m), seed + 1
+        maps = [linear_sum_assignment(np.log(np.minimum(levels, 1e100)))[1], *(f for f, _ in relaxed)]
+        yield from _best_first([BijectionTabu(DX, DY, f, seed) for seed, f in enumerate(maps)])
+        for seed in itertools.count(len(maps)):
+            yield BijectionTabu(DX, DY, rng.permutation(n), seed)
+    starts = [(levels.argmin(axis=1), levels.argmin(axis=0)), _maps(engine, interval), *relaxed]
+    yield from _best_first([RelationTabu(DX, DY, f, g, seed) for seed, (f, g) in enumerate(starts)])
+    for seed in itertools.count(len(starts)):
+        yield RelationTabu(DX, DY, rng.integers(m, size=n), rng.integers(n, size=m), seed)
+
+
+def _best_first(searches: Sequence[TabuSearch]) -> list[TabuSearch]:
+    """In the order of the values of their starts."""
+    return sorted(searches, key=lambda search: search.best)
 
 
 def _maps(engine: Engine, interval: Interval) -> tuple[Indices, Indices]:
