@@ -160,7 +160,7 @@ def chosen_order(wanted, top, fit):
 
 
 @inner
-def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values):
+def write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values):
     """Write the weighted values of one patch at the vertices nearer than patch.core spacings to its centre."""
     k, centre, points = start, ball.members[0], ball.points
     spacing, core = sheet.spacing[centre], patch.core
@@ -171,7 +171,8 @@ def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch
         if s >= 1.0 or k == stop or stencils.squared_distance(sheet.vertices, centre, q) >= (core * spacing) ** 2:
             continue
         out = values[k]
-        if not write_values(u, v, polynomial(coefficients, order, reach, u, v), frame, spacing, out):
+        jet = polynomial(coefficients, order, reach, u - fit.origin[0], v - fit.origin[1])
+        if not write_values(u, v, jet, frame, spacing, out):
             continue
         weight = (1.0 - s) ** 2 * most
         sign = 1.0
@@ -196,7 +197,7 @@ def write_patch(start, stop, size, top, asked, reach, frame, patch, fit, sheet, 
     factor = curvature_and_gradients(fit.jets[order], frame[9] * spacing, frame[10] * spacing)[4]
     c = fit.covariances[order]
     bias = patch.noise / spacing**4 * factor * (c[2] - c[3])  # the mean of f11 f22 - f12^2 over the noise
-    write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values)
+    write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values)
 
 
 @kernel
