@@ -92,6 +92,25 @@ def test_nested_fits_equal_orthogonalised_least_squares(order):
     np.testing.assert_allclose(out[: len(c)], c, rtol=1e-6, atol=1e-8)
 
 
+def test_half_a_disc_tells_order_eight_about_the_mean_of_its_points():
+    rng = np.random.default_rng(36)
+    n, reach = 150, 3.0
+    u, v = reach * np.sqrt(rng.uniform(0, 1, n)) * np.array([np.cos(t := rng.uniform(0, np.pi, n)), np.sin(t)])
+    w = 0.3 - 0.2 * u + 0.1 * v + 0.4 * u * u - 0.3 * u * v + 0.2 * v * v + 0.05 * u**3 * v - 1e-3 * v**8
+    points, reaches, tops = np.stack([u, v, w, u * u + v * v]), np.array([reach]), []
+    work = nested_fits.fits(1)
+    for is_placed in (False, True):
+        if is_placed:
+            assert nested_fits.place_origin(points, n, reach, work)
+        nested_fits.add_moments(points, n, reaches, 8, work)
+        tops.append(nested_fits.fit_orders(0, reach, 8, work))
+    assert tops[0] < 8 and tops[1] == 8
+    # Exact data; pivots down to 2e-6 cost ten digits of sixteen at most.
+    np.testing.assert_allclose(work.jets[8], [0.3, -0.2, 0.1, 0.8, -0.3, 0.4], atol=1e-6)
+    assert not nested_fits.place_origin(np.zeros((4, 9)), 9, reach, work)
+    np.testing.assert_array_equal(work.targets, np.eye(45, 6))
+
+
 def test_points_on_a_conic_leave_the_order_below_two():
     t = np.linspace(0, 6, 40)
     points = np.stack([np.cos(t), 2 * np.sin(t), 0.1 * t, np.ones(40)])

@@ -21,6 +21,12 @@ DEGREES = np.array([d for d in range(MAX_ORDER + 1) for b in range(d + 1)])
 PIVOT = 2e-6
 """A monomial depends on earlier ones when this share of its squared norm is left.  A smaller share would admit fits
 that nearly interpolate: precise and wrong."""
+ONE_SIDED = 0.1
+"""Distance of the mean of the points from the centre of a ball, over its radius, from which on it is one-sided.
+
+Monomials about the centre of half a disc depend on each other so much that order 6 cannot be told; about the mean of
+the points they do not.  The polynomials are the same.
+"""
 SPARE, SURPLUS = 2, 1.25
 """An order needs SPARE more points than unknowns, and above 2 also SURPLUS as many."""
 
@@ -29,8 +35,12 @@ class Fits(NamedTuple):
     """Work space of one thread.
 
     moments[ball, b, a] and offsets[ball, b, a] are the sums of u^a v^b and of w u^a v^b, `sums` and `offset_sums` those
-    of one ball by degree.  Of the points still to be added `powers` has u^a and `places` has v and w.
+    of one ball by degree, u and v being counted from `origin`.  Of the points still to be added `powers` has u^a and
+    `places` has v and w.  targets[i] are value and derivatives f1, f2, f11/2, f12, f22/2 of a monomial at the centre.
     """
+
+    origin: np.ndarray
+    targets: np.ndarray
 
     moments: np.ndarray
     offsets: np.ndarray
@@ -51,6 +61,8 @@ def fits(n_shells):
     """Work space for at most n shells."""
     p = TERMS[MAX_ORDER]
     return Fits(
+        np.zeros(2),
+        np.eye(p, 6),
         np.zeros((n_shells, WIDTH, WIDTH)),
         np.zeros((n_shells, MAX_ORDER + 1, MAX_ORDER + 1)),
         np.zeros((n_shells, AT_ONCE, WIDTH)),
@@ -64,6 +76,31 @@ def fits(n_shells):
         np.zeros((MAX_ORDER + 1, 6)),
         np.zeros(MAX_ORDER + 1),
     )
+
+
+@inner
+def place_origin(points, n, reach, work):
+    """Count u and v from the mean of the points of one ball if it is one-sided, else from its centre; whether it is."""
+    u = v = count = 0.0
+    for i in range(n):
+        if points[3, i] < reach * reach:
+            u, v, count = u + points[0, i], v + points[1, i], count + 1.0
+    u, v = u / count, v / count
+    one_sided = u * u + v * v > (ONE_SIDED * reach) ** 2
+    if not one_sided and work.origin[0] == 0.0 and work.origin[1] == 0.0:
+        return False  # the targets are at hand
+    work.origin[0], work.origin[1] = (u, v) if one_sided else (0.0, 0.0)
+    px, py = np.zeros(MAX_ORDER + 1), np.zeros(MAX_ORDER + 1)
+    px[0] = py[0] = 1.0
+    for k in range(1, MAX_ORDER + 1):
+        px[k], py[k] = -px[k - 1] * work.origin[0] / reach, -py[k - 1] * work.origin[1] / reach
+    for i in range(TERMS[MAX_ORDER]):
+        a, b, target = DEGREES[i] - V_POWERS[i], V_POWERS[i], work.targets[i]
+        a1, b1, a2, b2 = max(a - 1, 0), max(b - 1, 0), max(a - 2, 0), max(b - 2, 0)
+        target[0], target[1], target[2] = px[a] * py[b], a * px[a1] * py[b], b * px[a] * py[b1]
+        target[3], target[4] = 0.5 * a * (a - 1) * px[a2] * py[b], a * b * px[a1] * py[b1]
+        target[5] = 0.5 * b * (b - 1) * px[a] * py[b2]
+    return one_sided
 
 
 @inlined
@@ -96,7 +133,7 @@ def add_moments(points, n, reaches, order, work):
     offsets[:n_shells, : order + 1, : order + 1] = 0.0
     counts[:n_shells], squares[:n_shells] = 0.0, 0.0
     for i in range(n):
-        u, v, w, q = points[0, i], points[1, i], points[2, i], points[3, i]
+        u, v, w, q = points[0, i] - work.origin[0], points[1, i] - work.origin[1], points[2, i], points[3, i]
         shell = 0
         while shell < n_shells and q >= reaches[shell] * reaches[shell]:
             shell += 1
@@ -144,12 +181,12 @@ def sort_by_degree(moments, reach, last, sums):
 
 @inlined
 def write_equation(i, order, work):
-    """Write a row of the normal equations; the columns after the monomials are the units 0..5 and the data."""
+    """Write a row of the normal equations; the columns after the monomials are the targets and the data."""
     factor, p, v, degree = work.factor, TERMS[order], V_POWERS[i], DEGREES[i]
     for j in range(i, p):
         factor[i, j] = work.sums[degree + DEGREES[j], v + V_POWERS[j]]
     for k in range(6):
-        factor[i, p + k] = 1.0 if i == k else 0.0
+        factor[i, p + k] = work.targets[i, k]
     factor[i, p + 6] = work.offset_sums[degree, v]
 
 
@@ -174,7 +211,7 @@ def fit_orders(shell, reach, order, work):
     """Fit all orders up to `order`; return the highest complete one.
 
     The upper Cholesky factor of the monomials in the order of their degree holds those of all lower orders, and the
-    columns beside it turn into the rows z and y for which the coefficient c of order d is the sum of z_kc y_k, its
+    columns beside it turn into the rows z and y for which the target c of order d is the sum of z_kc y_k, its
     covariance the sum of z_ka z_kb and the explained square the sum of y_k^2 over the monomials k of order d.
     """
     sort_by_degree(work.moments[shell], reach, 2 * order, work.sums)

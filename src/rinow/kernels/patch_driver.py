@@ -66,12 +66,12 @@ def treat(i, task, is_mean, reaches, centres, sheet, tables, frames, out, work, 
     size = balls.grow(v, frame, own[-1], i + 1, sheet, ball)
     asked = order + 1 if task == VALUES and order % 2 == 0 and order < MAX_ORDER else order
     asked = nested_fits.highest_order(size, asked)
-    if asked >= 2:
-        nested_fits.add_moments(ball.points, size, own, asked, fit)
     if task == TABLES:
         k1, k2, s2 = frame[9] * spacing, frame[10] * spacing, centres.noise[i] / (spacing * spacing)
-        patch_fits.write_rows(start, own, asked, is_mean, k1, k2, s2, fit, tables, values, gradients)
+        patch_fits.write_rows(start, ball.points, size, own, asked, is_mean, k1, k2, s2, fit, tables, values, gradients)
     elif asked >= 2:
+        nested_fits.place_origin(ball.points, size, own[0], fit)
+        nested_fits.add_moments(ball.points, size, own, asked, fit)
         top = nested_fits.fit_orders(0, own[0], asked, fit)
         if task == FRAMES and top >= 2:
             patches.write_frame(fit.jets[top], spacing, frame, frames[i])

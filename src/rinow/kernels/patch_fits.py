@@ -108,17 +108,25 @@ def write_row(t, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients
 
 
 @inner
-def write_rows(t, reaches, order, is_mean, k1, k2, s2, fit, tables, values, gradients):
-    """Write one row for each of some nested balls, whose moments are at hand, from row t on."""
-    before, reference = 0.0, np.nan
+def write_rows(t, points, n, reaches, order, is_mean, k1, k2, s2, fit, tables, values, gradients):
+    """Write one row for each of some nested balls from row t on; of one-sided ones each has an origin of its own."""
+    before, reference, apart = 0.0, np.nan, False
+    if order >= 2:
+        apart = nested_fits.place_origin(points, n, reaches[-1], fit)
+        if not apart:
+            nested_fits.add_moments(points, n, reaches, order, fit)
     for k in range(len(reaches)):
-        count = fit.counts[k] if order >= 2 else 0.0
+        if apart:
+            nested_fits.place_origin(points, n, reaches[k], fit)
+            nested_fits.add_moments(points, n, reaches[k : k + 1], order, fit)
+        shell = 0 if apart else k
+        count = fit.counts[shell] if order >= 2 else 0.0
         top = nested_fits.highest_order(count, order)
         if count == before or top < 2:
             write_no_row(t + k, tables)
             continue
         before = count
-        top = nested_fits.fit_orders(k, reaches[k], top, fit)
+        top = nested_fits.fit_orders(shell, reaches[k], top, fit)
         write_row(t + k, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients)
         if math.isnan(reference) and not math.isnan(tables.bias[t + k, 0]):
             reference = values[2]

@@ -162,7 +162,7 @@ def chosen_order(wanted, top, fit):
 
 
 @inner
-def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, fit, sheet, ball, vertices, values):
+def write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values):
     """Write the weighted values of one patch at the vertices nearer than patch.core spacings to its centre."""
     k, centre, points = start, ball.members[0], ball.points
     c, room = fit.covariances[order], np.empty((3, TERMS[-1]))
@@ -175,10 +175,12 @@ def write_core(start, stop, size, order, coefficients, bias, reach, frame, patch
         if s >= 1.0 or k == stop or stencils.squared_distance(sheet.vertices, centre, q) >= (core * spacing) ** 2:
             continue
         out = values[k]
-        if not write_values(u, v, polynomial(coefficients, order, reach, u, v), frame, spacing, out):
+        x, y = u - fit.origin[0], v - fit.origin[1]
+        jet = polynomial(coefficients, order, reach, x, y)
+        if not write_values(u, v, jet, frame, spacing, out):
             continue
         weight = (1.0 - s) ** 2 * most
-        gain = nested_fits.bend_variance(u, v, reach, order, fit, room) / at_centre if is_crowded else 1.0
+        gain = nested_fits.bend_variance(x, y, reach, order, fit, room) / at_centre if is_crowded else 1.0
         risk = patch.risk * max(gain, 1.0)
         if gain > LOOSE:
             weight *= FALLEN
@@ -204,7 +206,7 @@ def write_patch(start, stop, size, top, asked, reach, frame, patch, fit, sheet, 
     factor = curvature_and_gradients(fit.jets[order], frame[9] * spacing, frame[10] * spacing)[4]
     c = fit.covariances[order]
     bias = patch.noise / spacing**4 * factor * (c[2] - c[3])  # the mean of f11 f22 - f12^2 over the noise
-    write_core(start, stop, size, order, coefficients, bias, reach, frame, patch, fit, sheet, ball, vertices, values)
+    write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values)
 
 
 @kernel
