@@ -160,7 +160,7 @@ def test_points_in_rows_fix_a_polynomial_at_the_centre_and_not_beside_it():
     assert len(u) < patches.ROOMY * nested_fits.TERMS[5]
     work, _ = fit_of(u, v, 5, 3.0)
     at_centre, beside = (nested_fits.bend_variance(s, 0.0, 3.0, 5, work, np.empty((3, 45))) for s in (0.0, 1.0))
-    assert beside > patches.LOOSE * at_centre
+    assert beside > 10.0 * at_centre
 
 
 def test_polynomial_has_its_derivatives():

@@ -17,8 +17,9 @@ SHARP = 2.0
 """Curvature, over the inverse spacing, that no mesh resolves: beyond it a fit has failed."""
 FALLEN = 1e-6
 """Weight of a fit whose order had to be lowered."""
-ROOMY, LOOSE = 2.0, 10.0
-"""Points over unknowns below which a fit may be loose beside its centre: more than so many times the variance there."""
+ROOMY, LOOSE = 2.0, 40.0
+"""Points over unknowns below which a fit may be loose beside its centre: more than so many times the variance there.
+Its weight falls with the square of that ratio."""
 SYMMETRIC = 1.5
 """Largest ratio of variances of stencils that count as symmetric."""
 N_VALUES = 15
@@ -182,8 +183,7 @@ def write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, 
         weight = (1.0 - s) ** 2 * most
         gain = nested_fits.bend_variance(x, y, reach, order, fit, room) / at_centre if is_crowded else 1.0
         risk = patch.risk * max(gain, 1.0)
-        if gain > LOOSE:
-            weight *= FALLEN
+        weight *= min(1.0, LOOSE / gain) ** 2
         sign = 1.0
         if not sheet.is_oriented:
             dot = out[11] * sheet.normals[q, 0] + out[12] * sheet.normals[q, 1] + out[13] * sheet.normals[q, 2]
