@@ -172,9 +172,7 @@ def _tighten(work: Work, relation: Indices, interval: Interval, clock: Clock) ->
         relation, value, step = repaired, smaller, 0
 
 
-def _repair(
-    work: Work, relation: Indices, target: float, clock: Clock, most: int = REPAIRS
-) -> Indices | None:
+def _repair(work: Work, relation: Indices, target: float, clock: Clock, most: int = REPAIRS) -> Indices | None:
     """Take the pairs in conflict out, with some others, and dive for them again, until none is left; None if one is."""
     wrong, stalled = work.conflicts(relation, target), 0
     fewest = len(wrong)

@@ -1,8 +1,8 @@
 """Tabu search that moves the partners in a relation of large spaces to points near them, until no two pairs disagree.
 
 The excess of a pair over a level t is the sum of max(0, |d(x, x') - d(y, y')| - t) over the pairs (x', y').  A move
-takes a pair with excess, mostly the worst, to the best of the points near its free end.  There is no table: a move costs
-as many steps as there are pairs, for each point that is tried.
+takes a pair with excess, mostly the worst, to the best of the points near its free end.  There is no table: a move
+costs as many steps as there are pairs, for each point that is tried.
 """
 
 from typing import Any, NamedTuple
