@@ -33,8 +33,14 @@ LOOSENESS = 2.0
 TIGHT_LEVELS = 32
 """Tight levels that are tried before loose ones where the lower bound may be weak."""
 
+OFFERED = 8
+"""Relations that fit no level are measured for so many levels, then once in so many."""
+
 REPAIRS = 20
 """Repairs without progress before a target is given up."""
+
+GROWING_REPAIRS = 6
+"""The same while a net grows: another beginning costs less."""
 
 WORSE = 1.1
 """Share of the fewest conflicts that the next repair may start from."""
@@ -69,8 +75,14 @@ def approach(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
             if relation is not None:
                 _tighten(work, relation, interval, clock)
         relation, fits = _grown(work, level, clock)
-        if fits and relation is not None:
+        if relation is None:
+            continue
+        if fits:
             _tighten(work, relation, interval, clock)
+        elif k < OFFERED or k % OFFERED == 0:
+            whole = work.completed(np.where(relation < 0, LEFT_OVER, relation), clock)
+            if whole is not None:
+                interval.offer(*work.measured(whole))
 
 
 def _grown(work: Work, level: float, clock: Clock) -> tuple[Indices | None, bool]:
@@ -84,7 +96,8 @@ def _grown(work: Work, level: float, clock: Clock) -> tuple[Indices | None, bool
     relation, promising = begun
     size, largest = NET, max(len(work.X), len(work.Y))
     while promising:
-        repaired = _repair(work, relation, level, clock)
+        relation = work.polished(relation, level)
+        repaired = _repair(work, relation, level, clock, GROWING_REPAIRS)
         if repaired is None:
             break
         relation = repaired
@@ -95,7 +108,7 @@ def _grown(work: Work, level: float, clock: Clock) -> tuple[Indices | None, bool
         if larger is None:
             break
         relation = larger
-    return work.completed(np.where(relation < 0, LEFT_OVER, relation), clock), False
+    return relation, False
 
 
 def _from_nets(work: Work, interval: Interval, clock: Clock) -> Indices | None:
@@ -159,12 +172,12 @@ def _tighten(work: Work, relation: Indices, interval: Interval, clock: Clock) ->
         relation, value, step = repaired, smaller, 0
 
 
-def _repair(work: Work, relation: Indices, target: float, clock: Clock) -> Indices | None:
+def _repair(work: Work, relation: Indices, target: float, clock: Clock, most: int = REPAIRS) -> Indices | None:
     """Take the pairs in conflict out, with some others, and dive for them again, until none is left; None if one is."""
     wrong, stalled = work.conflicts(relation, target), 0
     fewest = len(wrong)
     while len(wrong):
-        if stalled == REPAIRS or clock.over:
+        if stalled == most or clock.over:
             return None
         again = work.repaired(relation, wrong, target, BALLS[stalled % len(BALLS)], clock)
         stalled += 1

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import RELATION
-from rinow.kernels import distortion
+from rinow.kernels import distortion, polish
 from rinow.kernels import dives as dive_kernels
 from rinow.kernels.dives import ABSENT, LEFT_OVER, UNDECIDED
 
@@ -25,8 +25,14 @@ TRIES = 8
 NET = 300
 """Farthest points of each space for which these dives look for partners."""
 
-MOST_ORPHANS = 0.03
+MOST_ORPHANS = 0.05
 """Share of the points that such a dive may leave over."""
+
+FIRST = 1e6
+"""Weight of the place that gets its partner first."""
+
+NEAR, MOVES = 24, 3000
+"""Points near a partner that a polish tries in its place, and its moves."""
 
 BALLS = 4
 """Pairs in conflict around which a repair takes out others too."""
@@ -49,6 +55,7 @@ class Work:
         self._eccentricities = self.X.max(axis=1), self.Y.max(axis=1)
         n, m = len(DX), len(DY)
         self._order = farthest_points(DX, n), n + farthest_points(DY, m)
+        self._near = tuple(np.argsort(D, axis=1)[:, :NEAR].astype(np.int32) for D in (self.X, self.Y))
         self._lists, k = np.empty((n + m, max(n, m)), np.int32), len(self.net(NET))
         self._counts = np.empty(0, np.int64)
         self._room = (
@@ -93,7 +100,8 @@ class Work:
         lists, counts, undecided = self._room
         partners = np.full((TRIES, n_points), ABSENT)
         partners[:, places] = UNDECIDED
-        weights, numbers = np.ones((TRIES, n_points)), np.zeros((TRIES, 2), np.int64)
+        weights, numbers = self._rng.uniform(1.0, 2.0, (TRIES, n_points)), np.zeros((TRIES, 2), np.int64)
+        weights[np.arange(TRIES), self._rng.choice(places, TRIES)] = FIRST
         random = self._rng.integers(1, 1 << 63, size=(TRIES, 1)).astype(np.uint64)
         dive_kernels.many_dives(
             self.X, self.Y, places, self._lists[:k], self._counts, t, most, lists, counts, undecided, partners, weights,
@@ -120,6 +128,22 @@ class Work:
             p = np.searchsorted(places, v)
             again[places[(self.X[xs[p], xs] < radius) | (self.Y[ys[p], ys] < radius)]] = UNDECIDED
         return self._finished(again, level, clock)
+
+    def polished(self, partners: Indices, level: float) -> Indices:
+        """The relation with partners moved to points near them where pairs disagree."""
+        places, xs, ys = self.pairs(partners)
+        t, n_free_y = np.float32(level / self.scale), int(np.searchsorted(places, len(self.X)))
+        state = polish.Polish(
+            self.X, self.Y, *self._near, xs, ys, np.array([n_free_y]), np.empty(len(xs), np.float32),
+            np.zeros(len(xs), np.int64), self._random,
+        )  # fmt: skip
+        best_xs, best_ys = xs.copy(), ys.copy()
+        total = polish.renew(state, t)
+        if total > 0.0:
+            polish.search(state, t, MOVES, total, best_xs, best_ys)
+        moved = partners.copy()
+        moved[places] = np.concatenate([best_ys[:n_free_y], best_xs[n_free_y:]])
+        return moved
 
     def _list(self, places: Indices, partners: Indices, level: float, clock: Clock) -> bool:
         """List the possible partners of some places; whether the time sufficed."""
