@@ -46,28 +46,23 @@ class Arcs:
     flow: CurvatureFlow
 
     @cached_property
-    def _fit(self) -> tuple[Floats, Floats]:
-        """Forms (n_vertices, 5) and smooth curvatures (n_vertices,)."""
+    def _corrections(self) -> tuple[Floats, Floats]:
+        """What the lengths and the areas of arcs change: a term to add, and then a factor, of all vertices."""
         flow, n = self.flow, self.flow.mesh.n_vertices
         terms, forms, smooth = np.empty((n, chord_forms.N_FORM)), np.empty((n, chord_forms.N_FORM)), np.empty(n)
-        chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, N_BLOCKS, terms)
+        spokes = np.zeros((3 * len(flow.metric.faces), 2))
+        chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, N_BLOCKS, terms, spokes)
         is_fan, radii = flow.mesh.topology.vertex_is_manifold, REACH * flow.spacing
-        data = (flow.defect_densities, flow.areas, terms)
+        data = (flow.defect_densities, flow.areas, terms, spokes)
         chord_forms.fit_forms(radii, *data, is_fan, flow.metric, N_BLOCKS, forms, smooth)
-        return forms, smooth
-
-    @cached_property
-    def _bends(self) -> NDArray[np.float32]:
-        """(3 n_faces, 2): κ² at each corner along the two sides there."""
-        bends = np.zeros((3 * len(self.flow.metric.faces), 2), np.float32)
-        arcs.squared_bends(self._fit[0], self.flow.has_data, self.flow.metric, N_BLOCKS, bends)
-        return bends
+        ratios = np.empty(n)
+        arcs.area_ratios(smooth, flow.metric, ratios)
+        return np.einsum("vi,vi->v", terms, forms), ratios
 
     def curvatures(self, shares: Floats) -> Floats:
         """Defects over areas (n_vertices,) of arcs, the correction of each vertex multiplied by its share."""
-        out = np.empty(len(shares))
-        arcs.arc_curvatures(self.flow.areas, self._bends, shares, self._fit[1], self.flow.metric, out)
-        return out
+        terms, ratios = self._corrections
+        return (self.flow.defect_densities + shares * terms) / (1.0 + shares * (ratios - 1.0))
 
 
 def without_chords(flow: CurvatureFlow, noise: LengthNoise) -> tuple[Floats, Floats]:

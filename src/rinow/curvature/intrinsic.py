@@ -253,9 +253,11 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
     of a smooth surface.  A chord c is short by the share :math:`(κ c)^2/24` (Haantjes), which changes K by twice that,
     and the area of a triangle with K in it is larger by about :math:`K c^2/8` than that of the flat one.  Lengths do
     not know κ there, only that its largest square is at least \|K\|: the share of the error
-    :math:`K^2 c^2 (1/12 + 1/8)` that is not corrected is added to the spread.
+    :math:`K^2 c^2 (1/12 + 1/8)` that is not corrected is added to the spread, for the rest the next order, with
+    :math:`(K c^2)^2` in the place of :math:`\|K\| c^2`.
     """
     found = intrinsic_curvature(mesh, radius=radius)
-    chords = (1.0 - found.on_arcs) * UNSEEN * np.square(found.gaussian * longest_edges(mesh))
+    square = np.abs(found.gaussian) * np.square(longest_edges(mesh))
+    chords = UNSEEN * np.abs(found.gaussian) * square * (1.0 - found.on_arcs + found.on_arcs * square)
     spread = np.sqrt(CALIBRATION**2 * (found.variance + found.squared_bias) + chords * chords)
     return Estimate(found.gaussian, spread, found.radius)

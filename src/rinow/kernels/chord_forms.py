@@ -1,8 +1,8 @@
 """Squared normal curvatures around a vertex, from what their chords do to the defects of its neighbours.
 
 A chord of length c on the normal curvature κ is short by κ²c³/24.  On a surface κ² = (k1 cos² + k2 sin²)² of the
-direction θ, a combination of 1, cos 2θ, sin 2θ, cos 4θ and sin 4θ: five numbers, called a form here.  All forms are
-seen in a frame of their vertex: angles are developed, and 0 at its first neighbour.
+direction θ, a combination of 1, cos 2θ, sin 2θ, cos 4θ and sin 4θ: five numbers, called a form here.  Each
+vertex has a frame of its own for them, that of its fan laid out in the plane.
 """
 
 import math
@@ -30,13 +30,14 @@ def harmonics(x, y, row):
 
 
 @inner
-def turn_form(form, cos, sin, out):
-    """Write the coefficients of a form in a frame turned such that its old axis has the direction (cos, sin)."""
+def turn_form(form, cos, sin, mirror, out):
+    """Write a form as seen in another frame, in which its axis has the direction (cos, sin); `mirror` is 1 or -1."""
     c, s = cos * cos - sin * sin, 2.0 * cos * sin
+    b, d = mirror * form[2], mirror * form[4]
     out[0] = form[0]
-    out[1], out[2] = c * form[1] - s * form[2], s * form[1] + c * form[2]
+    out[1], out[2] = c * form[1] - s * b, s * form[1] + c * b
     c, s = c * c - s * s, 2.0 * c * s
-    out[3], out[4] = c * form[3] - s * form[4], s * form[3] + c * form[4]
+    out[3], out[4] = c * form[3] - s * d, s * form[3] + c * d
 
 
 @inner
@@ -49,8 +50,10 @@ def add_edge(derivative, length, x, y, row, out):
 
 
 @parallel_kernel
-def chord_terms(curvatures, areas, metric, n_blocks, terms):
-    """Write the derivatives of defect over area in the five coefficients of the form, 0 without data.
+def chord_terms(curvatures, areas, metric, n_blocks, terms, spokes):
+    """Write the derivatives of defect over area in the five coefficients of the form, 0 without data, and the frame.
+
+    `spokes` gets the direction from the vertex of each corner to the next corner.
 
     The derivative of an angle is 1/height in the opposite side and -cot(far angle)/length in a side at it; that of an
     area is length cot(opposite angle)/2.
@@ -65,7 +68,13 @@ def chord_terms(curvatures, areas, metric, n_blocks, terms):
                 continue
             k = lay_out_fan(v, FULL_TURN / fan_angle(v, metric), metric, members, slots, points)
             for i in range(metric.offsets[v], metric.offsets[v + 1]):
-                add_corner(metric.corners[i], curvatures[v], areas[v], k, metric, members, slots, points, row, terms[v])
+                c = metric.corners[i]
+                add_corner(c, curvatures[v], areas[v], k, metric, members, slots, points, row, terms[v])
+                w, column = end_beside(c, 0, metric.faces)
+                length = metric.lengths[c // 3, column]
+                spokes[c] = 0.0
+                if length > 0.0 and is_member(w, k, members, slots):
+                    spokes[c, 0], spokes[c, 1] = points[slots[w], 0] / length, points[slots[w], 1] / length
 
 
 @inner
@@ -88,7 +97,7 @@ def add_corner(c, curvature, area, n, metric, members, slots, points, row, out):
 
 
 @parallel_kernel
-def fit_forms(radii, curvatures, areas, terms, is_fan, metric, n_blocks, forms, smooth):
+def fit_forms(radii, curvatures, areas, terms, spokes, is_fan, metric, n_blocks, forms, smooth):
     """Write the form at each vertex that leaves the curvatures around it smoothest, and the smooth curvature there.
 
     Defects over areas in a ball are fitted by a quadratic polynomial minus the effect of one form, both by least
@@ -106,23 +115,27 @@ def fit_forms(radii, curvatures, areas, terms, is_fan, metric, n_blocks, forms, 
             if not is_fan[v]:
                 continue
             k = develop_ball(v, radii[v], areas[v] > 0.0, metric, members, slots, points, counts)
-            count = normal_equations(k, radii[v], curvatures, areas, terms, metric, members, slots, points, row, gram)
+            data = (curvatures, areas, terms, spokes)
+            count = normal_equations(k, radii[v], data, metric, members, slots, points, row, gram)
             if count < FEWEST or not gram[N, N] > 0.0:
                 continue
+            mean_square = gram[N, N] / gram[0, 0]
+            rank = eliminate(gram, 0, N_POLY)
             factor[:] = gram
-            rank = eliminate(factor)
-            ridge = factor[N, N] / max(count - rank, 1) / gram[N, N] * gram[0, 0]
+            rank += eliminate(factor, N_POLY, N)
+            ridge = factor[N, N] / max(count - rank, 1) / mean_square
             for i in range(N_POLY, N):
                 gram[i, i] += ridge
-            eliminate(gram)
+            eliminate(gram, N_POLY, N)
             substitute(gram, row)
             smooth[v] = row[0]
             forms[v] = row[N_POLY:N]
 
 
 @inner
-def normal_equations(n, radius, curvatures, areas, terms, metric, members, slots, points, row, gram):
+def normal_equations(n, radius, data, metric, members, slots, points, row, gram):
     """Write the upper triangle of the sums of products of unknowns and data, weighted; the number of data."""
+    curvatures, areas, terms, spokes = data
     gram[:] = 0.0
     count = 0
     for m in range(n):
@@ -131,11 +144,11 @@ def normal_equations(n, radius, curvatures, areas, terms, metric, members, slots
         weight = areas[w] * (1.0 - x * x - y * y)
         if not weight > 0.0:
             continue
-        cos, sin = first_direction(m, n, metric, members, slots, points)
-        if cos == 0.0 and sin == 0.0:
+        cos, sin, mirror = axis_of(m, n, spokes, metric, members, slots, points)
+        if mirror == 0.0:
             continue
         row[0], row[1], row[2], row[3], row[4], row[5] = 1.0, x, y, x * x, x * y, y * y
-        turn_form(terms[w], cos, sin, row[N_POLY:N])
+        turn_form(terms[w], cos, sin, mirror, row[N_POLY:N])
         for i in range(N_POLY, N):
             row[i] = -row[i]
         row[N] = curvatures[w]
@@ -147,27 +160,39 @@ def normal_equations(n, radius, curvatures, areas, terms, metric, members, slots
 
 
 @inner
-def first_direction(m, n, metric, members, slots, points):
-    """Direction from member m to its first neighbour, the axis of its frame; 0 if that is no member."""
+def axis_of(m, n, spokes, metric, members, slots, points):
+    """Direction of the axis of the frame of member m, 1 or -1 if mirrored; 0 if none of its neighbours is a member.
+
+    It is the turn that brings the spokes of its frame nearest to their places in the plane, by least squares.
+    """
     if m == 0:
-        return 1.0, 0.0
+        return 1.0, 0.0, 1.0
+    x = y = mirrored_x = mirrored_y = 0.0
     w = members[m]
-    first, _ = end_beside(metric.corners[metric.offsets[w]], 1, metric.faces)
-    if not is_member(first, n, members, slots):
-        return 0.0, 0.0
-    x, y = points[slots[first], 0] - points[m, 0], points[slots[first], 1] - points[m, 1]
+    for i in range(metric.offsets[w], metric.offsets[w + 1]):
+        c = metric.corners[i]
+        q, _ = end_beside(c, 0, metric.faces)
+        if is_member(q, n, members, slots):
+            dx, dy = points[slots[q], 0] - points[m, 0], points[slots[q], 1] - points[m, 1]
+            a, b = dx * spokes[c, 0], dy * spokes[c, 1]
+            p, r = dy * spokes[c, 0], dx * spokes[c, 1]
+            x, y = x + a + b, y + p - r
+            mirrored_x, mirrored_y = mirrored_x + a - b, mirrored_y + p + r
+    mirror = 1.0
+    if mirrored_x * mirrored_x + mirrored_y * mirrored_y > x * x + y * y:
+        x, y, mirror = mirrored_x, mirrored_y, -1.0
     length = math.sqrt(x * x + y * y)
-    return (x / length, y / length) if length > 0.0 else (0.0, 0.0)
+    return (x / length, y / length, mirror) if length > 0.0 else (0.0, 0.0, 0.0)
 
 
 @inner
-def eliminate(a):
-    """Replace the upper triangle by its Cholesky factor, without rows of dependent unknowns; the number of others.
+def eliminate(a, first, last):
+    """Turn rows of the upper triangle into rows of its Cholesky factor, 0 for dependent unknowns; how many are not.
 
     The last row and column belong to the data: what is left of its diagonal is the sum of squared residuals.
     """
     rank = 0
-    for i in range(N):
+    for i in range(first, last):
         before = a[i, i]
         for h in range(i):
             before += a[h, i] * a[h, i]
