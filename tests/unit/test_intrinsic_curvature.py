@@ -138,6 +138,16 @@ def test_spread_covers_the_error_under_noise():
         assert c.radius.min() > 0
 
 
+@pytest.mark.parametrize("n", [1000, 4000])
+@pytest.mark.parametrize("noise", [0, 0.01, 0.05])
+def test_spread_covers_the_error_on_spheres(n, noise):
+    # The ball is large there: the errors of all vertices are nearly one, that of chords.
+    shape = shapes.irregular_sphere(n)
+    spacing = TriangleMesh(shape.vertices, shape.faces).mean_edge_length
+    c = curvature(shapes.noisy(shape, noise * spacing))
+    assert np.mean(np.abs(c.gaussian - 1) < 2 * c.spread) > 0.9
+
+
 def test_radius_fixes_the_scale():
     c = curvature(TORUS, radius=0.6)
     assert 0.4 < np.median(c.radius) < 0.8
