@@ -17,16 +17,16 @@ from rinow.kernels import arcs, chord_forms
 
 def terms_of(flow):
     n, f = len(flow.areas), len(flow.metric.faces)
-    terms, medians = np.empty((n, 5)), np.zeros((3 * f, 2))
-    chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, 4, terms, medians)
-    return terms, medians
+    terms, spokes = np.empty((n, 5)), np.zeros((3 * f, 2))
+    chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, 4, terms, spokes)
+    return terms, spokes
 
 
 def forms_of(mesh):
     flow = CurvatureFlow(mesh)
-    terms, medians = terms_of(flow)
+    terms, spokes = terms_of(flow)
     forms, smooth = np.empty((len(terms), 5)), np.empty(len(terms))
-    data = (flow.defect_densities, flow.areas, terms, medians, mesh.topology.vertex_is_manifold)
+    data = (flow.defect_densities, flow.areas, terms, spokes, mesh.topology.vertex_is_manifold)
     chord_forms.fit_forms(REACH * flow.spacing, *data, flow.metric, 4, forms, smooth)
     return forms, smooth
 

@@ -17,8 +17,8 @@ __all__ = ["Arcs", "without_chords"]
 
 Floats = NDArray[np.float64]
 
-REACH = 3.5
-"""Radius of the balls in local spacings: some forty vertices for eleven unknowns."""
+REACH = 4.0
+"""Radius of the balls in local spacings: some fifty vertices for eleven unknowns."""
 
 EVIDENCE = 2.0
 """Corrections count from where they halve the noise: five numbers fitted to fifty vertices take away up to that much by
@@ -50,10 +50,10 @@ class Arcs:
         """What the lengths and the areas of arcs change: a term to add, and then a factor, of all vertices."""
         flow, n = self.flow, self.flow.mesh.n_vertices
         terms, forms, smooth = np.empty((n, chord_forms.N_FORM)), np.empty((n, chord_forms.N_FORM)), np.empty(n)
-        medians = np.zeros((3 * len(flow.metric.faces), 2))
-        chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, N_BLOCKS, terms, medians)
+        spokes = np.zeros((3 * len(flow.metric.faces), 2))
+        chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, N_BLOCKS, terms, spokes)
         is_fan, radii = flow.mesh.topology.vertex_is_manifold, REACH * flow.spacing
-        data = (flow.defect_densities, flow.areas, terms, medians)
+        data = (flow.defect_densities, flow.areas, terms, spokes)
         chord_forms.fit_forms(radii, *data, is_fan, flow.metric, N_BLOCKS, forms, smooth)
         ratios = np.empty(n)
         arcs.area_ratios(smooth, flow.metric, ratios)

@@ -50,10 +50,10 @@ def add_edge(derivative, length, x, y, row, out):
 
 
 @parallel_kernel
-def chord_terms(curvatures, areas, metric, n_blocks, terms, medians):
+def chord_terms(curvatures, areas, metric, n_blocks, terms, spokes):
     """Write the derivatives of defect over area in the five coefficients of the form, 0 without data, and the frame.
 
-    `medians` gets twice the vector from each corner to the midpoint of the opposite side, in the frame of its vertex.
+    `spokes` gets the direction from the vertex of each corner to the next corner.
 
     The derivative of an angle is 1/height in the opposite side and -cot(far angle)/length in a side at it; that of an
     area is length cot(opposite angle)/2.
@@ -70,18 +70,11 @@ def chord_terms(curvatures, areas, metric, n_blocks, terms, medians):
             for i in range(metric.offsets[v], metric.offsets[v + 1]):
                 c = metric.corners[i]
                 add_corner(c, curvatures[v], areas[v], k, metric, members, slots, points, row, terms[v])
-                medians[c, 0], medians[c, 1] = median(c, 0.0, 0.0, k, metric, members, slots, points)
-
-
-@inner
-def median(c, x, y, n, metric, members, slots, points):
-    """Sum of the vectors from (x, y) to the two other vertices of the face of corner c; 0 unless both are members."""
-    p, _ = end_beside(c, 0, metric.faces)
-    q, _ = end_beside(c, 1, metric.faces)
-    if not is_member(p, n, members, slots) or not is_member(q, n, members, slots):
-        return 0.0, 0.0
-    i, j = slots[p], slots[q]
-    return points[i, 0] + points[j, 0] - 2.0 * x, points[i, 1] + points[j, 1] - 2.0 * y
+                w, column = end_beside(c, 0, metric.faces)
+                length = metric.lengths[c // 3, column]
+                spokes[c] = 0.0
+                if length > 0.0 and is_member(w, k, members, slots):
+                    spokes[c, 0], spokes[c, 1] = points[slots[w], 0] / length, points[slots[w], 1] / length
 
 
 @inner
@@ -104,7 +97,7 @@ def add_corner(c, curvature, area, n, metric, members, slots, points, row, out):
 
 
 @parallel_kernel
-def fit_forms(radii, curvatures, areas, terms, medians, is_fan, metric, n_blocks, forms, smooth):
+def fit_forms(radii, curvatures, areas, terms, spokes, is_fan, metric, n_blocks, forms, smooth):
     """Write the form at each vertex that leaves the curvatures around it smoothest, and the smooth curvature there.
 
     Defects over areas in a ball are fitted by a quadratic polynomial minus the effect of one form, both by least
@@ -122,7 +115,7 @@ def fit_forms(radii, curvatures, areas, terms, medians, is_fan, metric, n_blocks
             if not is_fan[v]:
                 continue
             k = develop_ball(v, radii[v], areas[v] > 0.0, metric, members, slots, points, counts)
-            data = (curvatures, areas, terms, medians)
+            data = (curvatures, areas, terms, spokes)
             count = normal_equations(k, radii[v], data, metric, members, slots, points, row, gram)
             if count < FEWEST or not gram[N, N] > 0.0:
                 continue
@@ -142,7 +135,7 @@ def fit_forms(radii, curvatures, areas, terms, medians, is_fan, metric, n_blocks
 @inner
 def normal_equations(n, radius, data, metric, members, slots, points, row, gram):
     """Write the upper triangle of the sums of products of unknowns and data, weighted; the number of data."""
-    curvatures, areas, terms, medians = data
+    curvatures, areas, terms, spokes = data
     gram[:] = 0.0
     count = 0
     for m in range(n):
@@ -151,7 +144,7 @@ def normal_equations(n, radius, data, metric, members, slots, points, row, gram)
         weight = areas[w] * (1.0 - x * x - y * y)
         if not weight > 0.0:
             continue
-        cos, sin, mirror = axis_of(m, n, medians, metric, members, slots, points)
+        cos, sin, mirror = axis_of(m, n, spokes, metric, members, slots, points)
         if mirror == 0.0:
             continue
         row[0], row[1], row[2], row[3], row[4], row[5] = 1.0, x, y, x * x, x * y, y * y
@@ -167,10 +160,10 @@ def normal_equations(n, radius, data, metric, members, slots, points, row, gram)
 
 
 @inner
-def axis_of(m, n, medians, metric, members, slots, points):
-    """Direction of the axis of the frame of member m, 1 or -1 if mirrored; 0 if none of its faces is there.
+def axis_of(m, n, spokes, metric, members, slots, points):
+    """Direction of the axis of the frame of member m, 1 or -1 if mirrored; 0 if none of its neighbours is a member.
 
-    It is the turn that brings the medians of its faces nearest to their places in the plane, by least squares.
+    It is the turn that brings the spokes of its frame nearest to their places in the plane, by least squares.
     """
     if m == 0:
         return 1.0, 0.0, 1.0
@@ -178,11 +171,13 @@ def axis_of(m, n, medians, metric, members, slots, points):
     w = members[m]
     for i in range(metric.offsets[w], metric.offsets[w + 1]):
         c = metric.corners[i]
-        dx, dy = median(c, points[m, 0], points[m, 1], n, metric, members, slots, points)
-        a, b = dx * medians[c, 0], dy * medians[c, 1]
-        p, r = dy * medians[c, 0], dx * medians[c, 1]
-        x, y = x + a + b, y + p - r
-        mirrored_x, mirrored_y = mirrored_x + a - b, mirrored_y + p + r
+        q, _ = end_beside(c, 0, metric.faces)
+        if is_member(q, n, members, slots):
+            dx, dy = points[slots[q], 0] - points[m, 0], points[slots[q], 1] - points[m, 1]
+            a, b = dx * spokes[c, 0], dy * spokes[c, 1]
+            p, r = dy * spokes[c, 0], dx * spokes[c, 1]
+            x, y = x + a + b, y + p - r
+            mirrored_x, mirrored_y = mirrored_x + a - b, mirrored_y + p + r
     mirror = 1.0
     if mirrored_x * mirrored_x + mirrored_y * mirrored_y > x * x + y * y:
         x, y, mirror = mirrored_x, mirrored_y, -1.0
