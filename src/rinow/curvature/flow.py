@@ -101,7 +101,7 @@ class CurvatureFlow:
         return self._rows[3]
 
     @cached_property
-    def start(self) -> Floats:
+    def defect_densities(self) -> Floats:
         """(n_vertices,): angle defect over area, 0 without data."""
         return np.divide(self.mesh.vertex_angle_defects, self.areas, out=np.zeros(len(self.areas)), where=self.has_data)
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass
-from math import comb
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.angle_defect import longest_edges
+from rinow.curvature.arcs import without_chords
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.length_noise import LengthNoise
+from rinow.curvature.powers import LADDER, ORDER, REFERENCE, Powers, combination
 from rinow.kernels import patch_order
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
@@ -20,14 +21,6 @@ __all__ = ["IntrinsicCurvature", "intrinsic", "intrinsic_curvature"]
 
 Floats = NDArray[np.float64]
 
-LADDER = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128)
-"""Numbers of steps m that compete."""
-REFERENCE = {1: 1, 2: 1, 3: 2} | {m: LADDER[LADDER.index(m) - 2] for m in LADDER[4:]}
-"""The smaller number of steps that the bias is seen against: half of m."""
-ORDER = 3
-"""Highest order."""
-NOISE_PROBES = ((2, 2), (4, 2), (8, 2), (8, 3))
-"""Steps and order of the fits whose residuals tell the noise; the smallest residual counts."""
 PASSES, SHRINK_PASSES = 10, 40
 """Repetitions of the mean over a ring that average squared errors."""
 VARIANCE_PASSES = 3
@@ -45,7 +38,10 @@ FLOOR = 0.1
 LARGE, FAR, PATCH = 20_000, 20, 200
 """Vertices from which their order matters, the share of all of them that numbers of neighbours then may be apart, and
 vertices of a patch."""
-FIELDS = ("gaussian", "variance", "squared_bias", "radius")
+Candidate = tuple[Floats, Floats, Floats, Floats]
+"""Values, variances, squared biases, radii."""
+UNSEEN = 1.0 / 12.0 + 1.0 / 8.0
+"""Relative error of K by chords and flat triangles of the side c on an umbilic, in units of K c²; see `intrinsic`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,48 +56,15 @@ class IntrinsicCurvature:
         Expected squared error by noise of the lengths, and by the average over a neighbourhood.
     radius : (n_vertices,) ndarray of float
         Radius of the ball averaged over.
+    on_arcs : (n_vertices,) ndarray of float
+        Share of the error of chords that is removed: see `rinow.curvature.arcs`.
     """
 
     gaussian: Floats
     variance: Floats
     squared_bias: Floats
     radius: Floats
-
-
-def combination(m: int, order: int) -> dict[int, float]:
-    """Coefficients of I - (I - S^m)^order as a polynomial in S: {m: order, 2m: -order(order-1)/2, ...}."""
-    return {m * j: float((-1) ** (j + 1) * comb(order, j)) for j in range(1, order + 1)}
-
-
-class Powers:
-    """S^m K for the numbers of steps asked for in ascending order; what is no longer needed is forgotten."""
-
-    def __init__(self, flow: CurvatureFlow) -> None:
-        self._flow, self._last = flow, 0
-        self._kept = {0: flow.start}
-
-    def __getitem__(self, m: int) -> Floats:
-        if m not in self._kept:
-            current = self._kept[self._last]
-            for i in range(self._last + 1, m + 1):
-                current = self._flow.step(current)
-                if i in NEEDED:
-                    self._kept[i] = current
-            self._kept[m], self._last = current, m
-        return self._kept[m]
-
-    def combined(self, coefficients: dict[int, float]) -> Floats:
-        """Sum of coefficient times S^m K."""
-        return sum((c * self[m] for m, c in sorted(coefficients.items())), np.zeros(1))
-
-    def forget(self, below: int) -> None:
-        """Drop powers that no candidate of at least `below` steps needs."""
-        needed = {j * m for m in LADDER if m >= below for j in range(1, ORDER + 1)} | {self._last}
-        needed |= {j * REFERENCE[m] for m in LADDER if m >= max(below, 1) for j in range(1, ORDER + 2)}
-        self._kept = {m: values for m, values in self._kept.items() if m in needed}
-
-
-NEEDED = frozenset(j * m for m in LADDER for j in range(1, ORDER + 2))
+    on_arcs: Floats
 
 
 def intrinsic_curvature(
@@ -134,7 +97,7 @@ def intrinsic_curvature(
     found = _in_given_order(_renumbered(mesh, order), radius, most_steps)
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
-    return IntrinsicCurvature(*(getattr(found, name)[rank] for name in FIELDS))
+    return IntrinsicCurvature(*(getattr(found, field.name)[rank] for field in fields(found)))
 
 
 def _closer_order(mesh: TriangleMesh | IntrinsicMesh) -> NDArray[np.intp] | None:
@@ -160,10 +123,11 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
     """The curvature computed in the order of the vertices."""
     flow = CurvatureFlow(mesh)
     noise = LengthNoise.of(flow)
-    powers = Powers(flow)
-    tau2 = _noise_level(flow, noise, powers)
+    start, shares = without_chords(flow, noise)
+    powers = Powers(flow, start)
+    tau2 = noise.level(flow, powers)
     n = mesh.n_vertices
-    best = IntrinsicCurvature(np.full(n, np.nan), np.full(n, np.inf), np.zeros(n), np.zeros(n))
+    best = IntrinsicCurvature(np.full(n, np.nan), np.full(n, np.inf), np.zeros(n), np.zeros(n), shares)
     wanted = None if radius is None else _nearest_rung(radius, noise)
     idle = 0
     for m in LADDER[: bisect_right(LADDER, most_steps)]:
@@ -204,36 +168,23 @@ def _shrink(best: IntrinsicCurvature, flow: CurvatureFlow) -> None:
         best.gaussian[:] *= np.where(total > 0.0, np.maximum(1.0 - error / total, 0.0), 1.0)
 
 
-def _noise_level(flow: CurvatureFlow, noise: LengthNoise, powers: Powers) -> Floats:
-    """(n_vertices,): variance of the edge lengths that the residuals of smooth fits show around each vertex."""
-    defects = flow.mesh.vertex_angle_defects
-    columns = np.full((len(defects), len(NOISE_PROBES)), np.nan)
-    for i, (m, order) in enumerate(NOISE_PROBES):
-        residuals = defects - flow.areas * powers.combined(combination(m, order))
-        with np.errstate(all="ignore"):
-            columns[:, i] = np.where(flow.has_data, residuals**2 / noise.sensitivity, np.nan)
-    return np.fmin.reduce(flow.means(columns, PASSES), axis=1)
-
-
-def _candidates(
-    m: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats
-) -> list[IntrinsicCurvature]:
+def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats) -> list[Candidate]:
     """The estimates of one scale, for all orders."""
     combinations = [combination(m, order) for order in range(1, ORDER + 1)] if m else [{0: 1.0}]
-    values = [powers.combined(c) if m else np.where(flow.has_data, flow.start, np.nan) for c in combinations]
+    values = [powers.combined(c) if m else np.where(flow.has_data, powers[0], np.nan) for c in combinations]
     variances = np.column_stack([_product(tau2, noise.variance(c)) for c in combinations])
     variances[~np.isfinite(values[0])] = np.nan
     radius = np.sqrt(np.fmax(SUPPORT * m * noise.step, flow.spacing**2))
     if not m:
         variances = np.fmax(variances, flow.means(variances, VARIANCE_PASSES))
-        return [IntrinsicCurvature(values[0], variances[:, 0], np.zeros(len(radius)), radius)]
+        return [(values[0], variances[:, 0], np.zeros(len(radius)), radius)]
     differences = [_difference(_reference(m, order + 1), c) for order, c in enumerate(combinations)]
     seen = np.column_stack([_product(tau2, noise.variance(d)) for d in differences])
     excess = np.column_stack([powers.combined(d) ** 2 for d in differences]) - seen
     both = np.concatenate([variances, seen], axis=1)
     variances, seen = np.split(np.fmax(both, flow.means(both, VARIANCE_PASSES)), 2, axis=1)
     biases = np.fmax(flow.means(excess, max(PASSES, m)), FLOOR * seen)
-    return [IntrinsicCurvature(values[r], variances[:, r], biases[:, r], radius) for r in range(ORDER)]
+    return [(values[r], variances[:, r], biases[:, r], radius) for r in range(ORDER)]
 
 
 def _product(noise: Floats, variance: Floats) -> Floats:
@@ -253,13 +204,13 @@ def _difference(a: dict[int, float], b: dict[int, float]) -> dict[int, float]:
     return {k: a.get(k, 0.0) - b.get(k, 0.0) for k in {*a, *b}}
 
 
-def _improve(best: IntrinsicCurvature, candidate: IntrinsicCurvature, where: NDArray[np.bool_] | None) -> bool:
+def _improve(best: IntrinsicCurvature, candidate: Candidate, where: NDArray[np.bool_] | None) -> bool:
     """Take the candidate wherever its predicted squared error is smaller; whether it is anywhere."""
-    better = candidate.variance + candidate.squared_bias < best.variance + best.squared_bias
+    better = candidate[1] + candidate[2] < best.variance + best.squared_bias
     if where is not None:
         better &= where
-    for name in FIELDS:
-        getattr(best, name)[better] = getattr(candidate, name)[better]
+    for kept, offered in zip((best.gaussian, best.variance, best.squared_bias, best.radius), candidate, strict=True):
+        kept[better] = offered[better]
     return bool(better.any())
 
 
@@ -297,11 +248,16 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
     less the variance of this difference.  At the end the values are multiplied by the positive part of
     :math:`1 - \langle error^2 \rangle / \langle K^2 \rangle` (James and Stein); a surface without defects has K = 0.
 
-    A mesh of chords has a metric that no comparison of scales tells from that of the smooth surface.  A chord c on a
-    normal curvature κ is short by the share :math:`(κ c)^2/24` (Haantjes), which changes K by twice that.  Lengths do
-    not know κ, only that its largest square is at least \|K\|: the error :math:`K |K| c^2/12` is added to the spread.
+    K is the defects over areas of the arcs whose chords the edges are, as far as an irregular mesh shows the normal
+    curvatures κ: see `rinow.curvature.arcs`.  A regular mesh of chords has a metric that no comparison tells from that
+    of a smooth surface.  A chord c is short by the share :math:`(κ c)^2/24` (Haantjes), which changes K by twice that,
+    and the area of a triangle with K in it is larger by about :math:`K c^2/8` than that of the flat one.  Lengths do
+    not know κ there, only that its largest square is at least \|K\|: the share of the error
+    :math:`K^2 c^2 (1/12 + 1/8)` that is not corrected is added to the spread, for the rest the next order, with
+    :math:`(K c^2)^2` in the place of :math:`\|K\| c^2`.
     """
     found = intrinsic_curvature(mesh, radius=radius)
-    chords = found.gaussian * found.gaussian * np.square(longest_edges(mesh)) / 12.0
+    square = np.abs(found.gaussian) * np.square(longest_edges(mesh))
+    chords = UNSEEN * np.abs(found.gaussian) * square * (1.0 - found.on_arcs + found.on_arcs * square)
     spread = np.sqrt(CALIBRATION**2 * (found.variance + found.squared_bias) + chords * chords)
     return Estimate(found.gaussian, spread, found.radius)

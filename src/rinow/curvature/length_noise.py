@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.flow import CurvatureFlow
+from rinow.curvature.powers import Powers, combination
 from rinow.kernels import smoothing
 
 __all__ = ["LengthNoise"]
@@ -17,6 +18,11 @@ Floats = NDArray[np.float64]
 
 GAUSSIAN = 3.0 / (16.0 * np.pi)
 """Integral of the squared second derivative across any line of a Gaussian density of variance 1 in the plane."""
+
+NOISE_PROBES = ((2, 2), (4, 2), (8, 2), (8, 3))
+"""Steps and order of the fits whose residuals tell the noise; the smallest residual counts."""
+LEVEL_PASSES = 10
+"""Repetitions of the mean over a ring that average squared residuals."""
 
 
 @dataclass(frozen=True)
@@ -65,3 +71,12 @@ class LengthNoise:
                 with np.errstate(all="ignore"):
                     total += (1.0 if k == m else 2.0) * a * b / (scale * scale * scale)
         return GAUSSIAN * self.density * total
+
+    def level(self, flow: CurvatureFlow, powers: Powers) -> Floats:
+        """(n_vertices,): variance of the edge lengths that the residuals of smooth fits show around each vertex."""
+        columns = np.full((len(flow.areas), len(NOISE_PROBES)), np.nan)
+        for i, (m, order) in enumerate(NOISE_PROBES):
+            residuals = flow.areas * (powers[0] - powers.combined(combination(m, order)))
+            with np.errstate(all="ignore"):
+                columns[:, i] = np.where(flow.has_data, residuals**2 / self.sensitivity, np.nan)
+        return np.fmin.reduce(flow.means(columns, LEVEL_PASSES), axis=1)
