@@ -94,6 +94,20 @@ def test_completed_relation_keeps_its_pairs():
     assert {(3, 1), (5, 0), (8, 7), (2, 4)} <= {(x, y) for x, y in pairs}
 
 
+def test_polish_takes_conflicts_out_and_changes_one_end_of_a_pair():
+    rng = np.random.default_rng(36)
+    D = squareform(pdist(rng.random((30, 2))))
+    work, level = Work(D, D), 0.1
+    start = np.concatenate([np.arange(30), np.arange(30)])
+    start[[2, 11, 45]] = [np.argsort(D[2])[9], np.argsort(D[11])[9], np.argsort(D[15])[9]]
+    start[20] = dives.ABSENT
+    polished = work.polished(start, level)
+    assert len(work.conflicts(start, level)) > 0
+    assert len(work.conflicts(polished, level)) == 0
+    assert polished[20] == dives.ABSENT
+    assert work.measured(polished)[1] <= level * (1 + 1e-6)  # single precision
+
+
 @SLOW
 def test_shuffled_mesh_is_isometric_to_itself():
     V, F = grid(6)

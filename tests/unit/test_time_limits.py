@@ -80,16 +80,17 @@ def test_search_without_all_runs_proves_nothing(monkeypatch):
 
 def test_completion_of_maps_comes_in_blocks(monkeypatch):
     X, Y = spaces(30, 25)
-    xs, ys = np.array([3, 5, 8]), np.array([1, 0, 7])
-    whole = Work(X, Y).extended(xs, ys, Clock(math.inf))
+    partners = np.full(55, dives.LEFT_OVER)
+    partners[[3, 5, 8]] = [1, 0, 7]
+    partners[[31, 30, 37]] = [3, 5, 8]
+    whole = Work(X, Y).completed(partners, Clock(math.inf))
     monkeypatch.setattr(large_work, "EXAMINED", 30 * 6 * 4)
     calls = recorded(monkeypatch, dives, "complete", lambda a: len(a[0]))
-    again = Work(X, Y).extended(xs, ys, Clock(math.inf))
+    again = Work(X, Y).completed(partners, Clock(math.inf))
     assert max(calls) <= 8
-    assert (again.f == whole.f).all()
-    assert (again.g == whole.g).all()
+    assert (again == whole).all()
     calls.clear()
-    assert Work(X, Y).extended(xs, ys, Looks(2)) is None
+    assert Work(X, Y).completed(partners, Looks(2)) is None
     assert len(calls) == 2
 
 

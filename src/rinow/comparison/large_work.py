@@ -55,7 +55,7 @@ class Work:
         self._eccentricities = self.X.max(axis=1), self.Y.max(axis=1)
         n, m = len(DX), len(DY)
         self._order = farthest_points(DX, n), n + farthest_points(DY, m)
-        self._near = tuple(np.argsort(D, axis=1)[:, :NEAR].astype(np.int32) for D in (self.X, self.Y))
+        self._near_x, self._near_y = (np.argsort(D, axis=1)[:, :NEAR].astype(np.int32) for D in (self.X, self.Y))
         self._lists, k = np.empty((n + m, max(n, m)), np.int32), len(self.net(NET))
         self._counts = np.empty(0, np.int64)
         self._room = (
@@ -134,7 +134,7 @@ class Work:
         places, xs, ys = self.pairs(partners)
         t, n_free_y = np.float32(level / self.scale), int(np.searchsorted(places, len(self.X)))
         state = polish.Polish(
-            self.X, self.Y, *self._near, xs, ys, np.array([n_free_y]), np.empty(len(xs), np.float32),
+            self.X, self.Y, self._near_x, self._near_y, xs, ys, np.array([n_free_y]), np.empty(len(xs), np.float32),
             np.zeros(len(xs), np.int64), self._random,
         )  # fmt: skip
         best_xs, best_ys = xs.copy(), ys.copy()
