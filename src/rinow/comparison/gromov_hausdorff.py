@@ -109,7 +109,9 @@ def gromov_hausdorff(
     With covering radii r and s the larger spaces are within r + s of the distance of the nets.  From below more is
     true: for a finite subset A of X and a correspondence of distortion δ, let f(a) be a point of the net of Y nearest
     to a partner of a; then :math:`\mathrm{dis} f \le \delta + 2s`.  Hence :math:`2 d_{GH} \ge \min \mathrm{dis} f - 2s`
-    over the maps f of A into the net, without r, and the same the other way round ("maps of subsets").
+    over the maps f of A into the net, without r, and the same the other way round ("maps of subsets").  Of spaces of
+    thousands of points, a dozen points and those farthest from them and from their partners are mapped into all of the
+    other space where the lower bound stays below half the upper one; this has the same name.
 
     References
     ----------

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import RELATION
 from rinow.comparison.interval import Interval
+from rinow.comparison.large_subsets import raise_by_few_points
 from rinow.comparison.large_work import NET, Work, farthest_points
 from rinow.comparison.warm_start import RelationTabu
 from rinow.kernels import compatibility
@@ -54,23 +55,30 @@ STEPS = (0.97, 0.985, 0.993)
 ABOVE = 1.0 + 1e-6
 """Targets stay above the lower bound by this factor: single precision."""
 
+FEW_POINTS = 0.2
+"""Share of the time left for raising a weak lower bound by few points and their partners."""
+
 TABU_NET, TABU_MOVES = 150, 4000
 """Points of the nets between which a tabu search finds a relation where the lower bound is weak, and its moves."""
 
-ROWS = 48
-"""Points of each space whose sorted distances are compared with those of all points of the other one."""
+FIRST_ROWS, ROWS = 4, 48
+"""Points of each space whose sorted distances are compared with those of all points of the other one: before the dives,
+and when these do not close the interval."""
 
 
 def approach(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
     """Improve the upper bound until it meets the lower one or the time is over."""
-    _bound_by_rows(DX, DY, interval, clock.part(0.1 * clock.left))
+    _bound_by_rows(DX, DY, FIRST_ROWS, interval, clock.part(0.1 * clock.left))
     if interval.closed or clock.over:
         return
     work = Work(DX, DY)
     for k, level in enumerate(_levels(interval)):
         if interval.closed or clock.over:
             return
+        if k == TIGHT_LEVELS:
+            _bound_by_rows(DX, DY, ROWS, interval, clock.part(0.1 * clock.left))
         if k == TIGHT_LEVELS and interval.upper > LOOSENESS * interval.lower:
+            raise_by_few_points(DX, DY, interval, clock.part(FEW_POINTS * clock.left))
             relation = _from_nets(work, interval, clock)
             if relation is not None:
                 _tighten(work, relation, interval, clock)
@@ -132,11 +140,11 @@ def _from_nets(work: Work, interval: Interval, clock: Clock) -> Indices | None:
     return work.completed(partners, clock)
 
 
-def _bound_by_rows(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
+def _bound_by_rows(DX: Floats, DY: Floats, n_rows: int, interval: Interval, clock: Clock) -> None:
     """The bound by sorted distances for some farthest points of each space against all of the other one."""
     sorted_x, sorted_y = np.sort(DX, axis=1), np.sort(DY, axis=1)
     for D, own, other in ((DX, sorted_x, sorted_y), (DY, sorted_y, sorted_x)):
-        for chosen in np.array_split(farthest_points(D, ROWS), -(-min(ROWS, len(D)) // 4)):
+        for chosen in np.array_split(farthest_points(D, n_rows), -(-min(n_rows, len(D)) // 4)):
             if clock.over or interval.closed:
                 return
             levels = np.empty((len(chosen), len(other)))
