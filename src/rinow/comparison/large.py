@@ -55,7 +55,7 @@ STEPS = (0.97, 0.985, 0.993)
 ABOVE = 1.0 + 1e-6
 """Targets stay above the lower bound by this factor: single precision."""
 
-FEW_POINTS = 0.2
+FEW_POINTS = 0.35
 """Share of the time left for raising a weak lower bound by few points and their partners."""
 
 TABU_NET, TABU_MOVES = 150, 4000

@@ -22,10 +22,11 @@ Indices = NDArray[np.intp]
 POINTS = 12
 """Points whose partners are searched for at first."""
 
-STEP, LEAST_STEP = 0.25, 0.004
-"""Shares of the open interval by which the next level is higher, at first and at least."""
+STEP, LEAST_STEP = 0.01, 0.0025
+"""Shares of the open interval by which the next level is higher, at first and at least: doubled by success, halved by
+failure."""
 
-DECISIONS, MORE = 500, 4
+DECISIONS, MORE = 2000, 4
 """Decisions after which a branch is given up at first; how many times as many when all steps have failed."""
 
 EXAMINED = 160_000_000
@@ -84,6 +85,7 @@ def raise_by_few_points(DX: Floats, DY: Floats, interval: Interval, clock: Clock
         outcome = search.outcome(level, most, clock)
         if outcome == subset_maps.REFUTED:
             interval.raise_lower(level, "maps of subsets")
+            step = min(2.0 * step, 0.5)
         elif step > LEAST_STEP:
             step *= 0.5
         elif outcome == subset_maps.FITS:
