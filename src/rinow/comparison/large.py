@@ -35,7 +35,7 @@ TIGHT_LEVELS = 32
 """Tight levels that are tried before loose ones where the lower bound may be weak."""
 
 OFFERED = 8
-"""Relations that fit no level are measured for so many levels, then once in so many."""
+"""Relations that fit no level are measured for so many levels, then once in so many"""
 
 REPAIRS = 20
 """Repairs without progress before a target is given up."""
@@ -55,8 +55,8 @@ STEPS = (0.97, 0.985, 0.993)
 ABOVE = 1.0 + 1e-6
 """Targets stay above the lower bound by this factor: single precision."""
 
-FEW_POINTS = 0.35
-"""Share of the time left for raising a weak lower bound by few points and their partners."""
+FAILED, FEW_POINTS = 4, 0.2
+"""Levels that fail before a weak lower bound is raised by few points and their partners, and share of the time left."""
 
 TABU_NET, TABU_MOVES = 150, 4000
 """Points of the nets between which a tabu search finds a relation where the lower bound is weak, and its moves."""
@@ -77,8 +77,9 @@ def approach(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
             return
         if k == TIGHT_LEVELS:
             _bound_by_rows(DX, DY, ROWS, interval, clock.part(0.1 * clock.left))
-        if k == TIGHT_LEVELS and interval.upper > LOOSENESS * interval.lower:
+        if k == FAILED and interval.upper > LOOSENESS * interval.lower:
             raise_by_few_points(DX, DY, interval, clock.part(FEW_POINTS * clock.left))
+        if k == TIGHT_LEVELS and interval.upper > LOOSENESS * interval.lower:
             relation = _from_nets(work, interval, clock)
             if relation is not None:
                 _tighten(work, relation, interval, clock)

@@ -22,7 +22,7 @@ Indices = NDArray[np.intp]
 POINTS = 12
 """Points whose partners are searched for at first."""
 
-STEP, LEAST_STEP = 0.01, 0.0025
+STEP, LEAST_STEP = 0.004, 0.002
 """Shares of the open interval by which the next level is higher, at first and at least: doubled by success, halved by
 failure."""
 
