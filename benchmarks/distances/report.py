@@ -24,11 +24,12 @@ its interval below.
 
 
 def write_page(root: Path, group: str, rows: list[Row]) -> None:
-    """Replace the results of a group and write the page from all results."""
+    """Replace the results of the same instances and seeds in a group, and write the page from all results."""
     file = root / "benchmarks" / "distances" / "results.json"
     results: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {"groups": {}}
     results["machine"] = f"{os.cpu_count()} cores, {platform.system()}, Python {platform.python_version()}"
-    results["groups"][group] = rows
+    old = {(row["name"], row["seed"]): row for row in results["groups"].get(group, [])}
+    results["groups"][group] = list((old | {(row["name"], row["seed"]): row for row in rows}).values())
     lines = [",\n".join(f"   {json.dumps(row)}" for row in rows) for rows in results["groups"].values()]
     groups = ",\n".join(f'  "{g}": [\n{text}\n  ]' for g, text in zip(results["groups"], lines, strict=True))
     file.write_text(f' {{"machine": {json.dumps(results["machine"])}, "groups": {{\n{groups}\n }}}}\n'.lstrip())
