@@ -1,11 +1,11 @@
 """Gromov-Hausdorff and Lipschitz distance: what is exact, what stays open, and how long it takes.
 
-    python benchmarks/bench_gromov_hausdorff.py [group ...] [--seeds N] [--seconds S] [--page]
+    python benchmarks/bench_gromov_hausdorff.py [group ...] [--seeds N ...] [--only TEXT] [--seconds S] [--page]
 
 Prints instance, lower and upper bound, whether they are equal, what proved the lower one, and seconds.  Groups:
 plane, space, hops100, hops200, noisy, lipschitz, circle, continuous, intervals, meshes; by default all of them.  The
-correspondence of every result is measured again.  With `--page` the results replace those of the same groups in
-`benchmarks/distances/results.json`, and docs/reference/benchmark-distances.md is written from all of them.
+correspondence of every result is measured again.  With `--page` the results replace those of the same instances and
+seeds in `benchmarks/distances/results.json`, and docs/reference/benchmark-distances.md is written from all of them.
 """
 
 from __future__ import annotations
@@ -171,7 +171,7 @@ GROUPS: dict[str, tuple[Callable[[int], Iterator[Instance]], float]] = {
     "plane": (plane, 60.0),
     "space": (space, 60.0),
     "hops100": (partial(hop_metrics, n=100), 10.0),
-    "hops200": (partial(hop_metrics, n=200), 10.0),
+    "hops200": (partial(hop_metrics, n=200), 20.0),
     "noisy": (noisy_copies, 60.0),
     "lipschitz": (bipartite, 60.0),
     "circle": (circle, 60.0),
@@ -214,7 +214,8 @@ def main() -> None:
     """Run the groups that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("groups", nargs="*", default=list(GROUPS))
-    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--seeds", type=int, nargs="+", default=list(range(5)))
+    parser.add_argument("--only", default="", help="text in the names of the instances")
     parser.add_argument("--seconds", type=float, help="for each instance, instead of those of its group")
     parser.add_argument("--page", action="store_true")
     options = parser.parse_args()
@@ -224,9 +225,10 @@ def main() -> None:
         rinow.lipschitz_distance(cloud(rng, small), cloud(rng, small), time_limit=2)
     rinow.gromov_hausdorff(hops(GRAPHS["G(n,.05)"](40, 7)), hops(GRAPHS["G(n,.05)"](40, 8)), time_limit=5)
     for group in options.groups:
-        (instances, limit), seeds = GROUPS[group], range(options.seeds)
+        instances, limit = GROUPS[group]
         seconds = limit if options.seconds is None else options.seconds
-        rows = [show(name, seed, seconds, *spaces) for seed in seeds for name, *spaces in instances(seed)]
+        wanted = ((seed, *row) for seed in options.seeds for row in instances(seed) if options.only in row[0])
+        rows = [show(name, seed, seconds, *spaces) for seed, name, *spaces in wanted]
         if options.page:
             write_page(Path(__file__).parents[1], group, rows)
 

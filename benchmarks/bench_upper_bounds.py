@@ -1,18 +1,23 @@
 """Upper bounds of the Gromov-Hausdorff distance of 500 points of the plane, next to those of other packages.
 
-    python benchmarks/bench_upper_bounds.py [--seeds N] [--seconds S]
+    python benchmarks/bench_upper_bounds.py [package ...] [--seeds N ...] [--seconds S] [--page]
 
 Unrelated clouds, and shuffled copies with noise 0.01.  The other packages, `euclidean-hausdorff` (the Hausdorff
 distance up to isometry, for coordinates) and `dgh`, take part where they are installed; their time is their own.
+With `--page` the values enter docs/reference/benchmark-distances.md.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from distances.report import write_page
 from numpy.typing import NDArray
 from scipy.spatial.distance import pdist, squareform
 
@@ -53,23 +58,30 @@ def instances(seed: int) -> Iterator[tuple[str, Floats, Floats]]:
     yield "noisy copies", points, rng.permutation(points) + rng.normal(0, 0.01, points.shape)
 
 
+def measure(package: str, seconds: float, seed: int, name: str, P: Floats, Q: Floats) -> dict[str, Any]:
+    """Print one line; what it says."""
+    start = time.perf_counter()
+    value = BOUNDS[package](P, Q, seconds)
+    spent = time.perf_counter() - start
+    print(f"{name:13s} {seed} {package:20s} {value:.4f} {spent:6.1f} s", flush=True)
+    return {"name": name, "seed": seed, "package": package, "upper": value, "seconds": round(spent, 2)}
+
+
 def main() -> None:
     """Print one line for each instance and package."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("packages", nargs="*", default=list(BOUNDS))
+    parser.add_argument("--seeds", type=int, nargs="+", default=list(range(5)))
     parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--page", action="store_true")
     options = parser.parse_args()
+    packages = [name for name in options.packages if importlib.util.find_spec(name.replace("-", "_"))]
     rng = np.random.default_rng(2)
     by_rinow(rng.random((90, 2)), rng.random((90, 2)), 3.0)  # compiles
-    for seed in range(options.seeds):
-        for name, P, Q in instances(seed):
-            for package, bound in BOUNDS.items():
-                start = time.perf_counter()
-                try:
-                    value = bound(P, Q, options.seconds)
-                except ImportError:
-                    continue
-                print(f"{name:13s} {seed} {package:20s} {value:.4f} {time.perf_counter() - start:6.1f} s", flush=True)
+    cases = [(seed, *case) for seed in options.seeds for case in instances(seed)]
+    rows = [measure(package, options.seconds, *case) for case in cases for package in packages]
+    if options.page:
+        write_page(Path(__file__).parents[1], "upper bounds", rows)
 
 
 if __name__ == "__main__":
