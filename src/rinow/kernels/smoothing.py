@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
 from rinow.kernels.development import develop, fan_angle
 
 FULL_TURN = 2.0 * math.pi
@@ -196,13 +196,23 @@ def half_heights(h, areas, metric):
 def ring_means(x, offsets, neighbours, out):
     """Write the mean of the finite values in each column of x at each vertex and its neighbours, nan without any."""
     for v in prange(offsets.shape[0] - 1):
+        first, last = offsets[v], offsets[v + 1]
         for j in range(x.shape[1]):
-            total, count = 0.0, 0
-            if math.isfinite(x[v, j]):
-                total, count = x[v, j], 1
-            for i in range(offsets[v], offsets[v + 1]):
-                y = x[neighbours[i], j]
-                if math.isfinite(y):
-                    total += y
-                    count += 1
-            out[v, j] = total / count if count > 0 else np.nan
+            total = x[v, j]
+            for i in range(first, last):
+                total += x[neighbours[i], j]
+            out[v, j] = total / (last - first + 1) if math.isfinite(total) else finite_mean(v, j, x, offsets, neighbours)
+
+
+@inner
+def finite_mean(v, j, x, offsets, neighbours):
+    """The mean of the finite values in column j at v and its neighbours, nan without any."""
+    total, count = 0.0, 0
+    if math.isfinite(x[v, j]):
+        total, count = x[v, j], 1
+    for i in range(offsets[v], offsets[v + 1]):
+        y = x[neighbours[i], j]
+        if math.isfinite(y):
+            total += y
+            count += 1
+    return total / count if count > 0 else np.nan
