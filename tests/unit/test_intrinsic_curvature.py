@@ -229,3 +229,12 @@ def test_no_shape_is_refused(shape):
 def test_a_single_triangle_has_no_interior():
     c = surface_curvature(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), method="intrinsic")
     assert np.isnan(c.gaussian).all() and (c.status == VertexStatus.BOUNDARY).all()
+
+
+@pytest.mark.parametrize("make", [shapes.irregular_torus, shapes.irregular_ellipsoid])
+def test_curvature_of_lengths_does_not_know_the_orientation_of_faces(make):
+    shape = make(500)
+    turned = np.where(np.random.default_rng(3).random((len(shape.faces), 1)) < 1 / 3, shape.faces[:, ::-1], shape.faces)
+    expected, found = (intrinsic_curvature(TriangleMesh(shape.vertices, faces)) for faces in (shape.faces, turned))
+    np.testing.assert_allclose(found.gaussian, expected.gaussian, rtol=0, atol=1e-9 * np.max(np.abs(expected.gaussian)))
+    np.testing.assert_allclose(found.on_arcs, expected.on_arcs, atol=1e-9)
