@@ -93,7 +93,9 @@ def test_one_step_is_a_regression_over_an_unrolled_neighbourhood(make, reach):
     smoothing.count_rows(*ball, counts)
     np.cumsum(counts, out=starts[1:])
     columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
-    smoothing.regression_rows(*ball, starts, columns, values, variances)
+    places, has_gap = np.empty((starts[-1], 2)), np.empty(n, np.bool_)
+    smoothing.row_places(*ball, starts, columns, places, has_gap)
+    smoothing.regression_rows(radii, flow.areas, starts, columns, places, has_gap, values, variances)
     for v in range(0, n, 30):
         expected = naive.regression_row(naive.develop(faces, length, v, radii[v]), flow.areas, radii[v])
         row = slice(starts[v], starts[v + 1])

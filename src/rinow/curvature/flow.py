@@ -82,17 +82,19 @@ class CurvatureFlow:
         t, n = self.mesh.topology, self.mesh.n_vertices
         radii = REACH * self.spacing
         weights = self.areas.copy()
-        ball = (radii, weights, t.vertex_is_manifold, self.has_data, self.metric, N_BLOCKS)
+        ball = (radii, self.areas, t.vertex_is_manifold, self.has_data, self.metric, N_BLOCKS)
         counts, starts = np.empty(n, np.int64), np.zeros(n + 1, np.int64)
         smoothing.count_rows(*ball, counts)
         np.cumsum(counts, out=starts[1:])
         columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
-        sums = np.empty(n)
+        places, has_gap, sums = np.empty((starts[-1], 2)), np.empty(n, np.bool_), np.empty(n)
+        smoothing.row_places(*ball, starts, columns, places, has_gap)
+        regression = (radii, weights, starts, columns, places, has_gap, values, variances)
         for _ in range(BALANCE_SWEEPS):
-            smoothing.regression_rows(*ball, starts, columns, values, variances)
+            smoothing.regression_rows(*regression)
             smoothing.column_sums(starts, columns, values, self.areas, sums)
             np.divide(weights * self.areas, sums, out=weights, where=self.has_data & (sums > 0.1 * self.areas))
-        smoothing.regression_rows(*ball, starts, columns, values, variances)
+        smoothing.regression_rows(*regression)
         return starts, columns, values, variances
 
     @property
