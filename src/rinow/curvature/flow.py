@@ -62,10 +62,9 @@ class CurvatureFlow:
     def spacing(self) -> Floats:
         """(n_vertices,): distance of neighbours, averaged around each vertex: see `stencils.local_spacing`."""
         t, n = self.mesh.topology, self.mesh.n_vertices
-        f, k = np.divmod(t.edge_halfedges, 3)
-        lengths, ends = self.mesh.edge_lengths[f, (k + 2) % 3], t.edges.ravel()
-        sums = np.bincount(ends, np.repeat(lengths, 2), n)
-        edges = self.means(sums / np.maximum(np.bincount(ends, minlength=n), 1), 1)
+        edges = np.empty(n)
+        smoothing.mean_sides(self.metric, edges)
+        edges = self.means(edges, 1)
         shares = np.where(t.vertex_is_boundary, 0.5, 1.0)
         with np.errstate(all="ignore"):
             areas = self._ring_sums(self._ring_sums(self.mesh.vertex_areas)) / self._ring_sums(self._ring_sums(shares))

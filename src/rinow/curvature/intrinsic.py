@@ -182,9 +182,7 @@ def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers,
         yield values, variance, bias, radius
 
 
-def _squared_bias(
-    m: int, order: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats
-) -> Floats:
+def _squared_bias(m: int, order: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats) -> Floats:
     """What a candidate differs by from its reference, squared, less the noise of that."""
     difference = _difference(_reference(m, order), combination(m, order))
     seen = _product(tau2, noise.variance(difference))

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
+from rinow.kernels.adjacency import previous_corner
 from rinow.kernels.development import develop, fan_angle
 
 FULL_TURN = 2.0 * math.pi
@@ -158,6 +159,21 @@ def column_sums(starts, columns, values, factors, out):
 
 
 @parallel_kernel
+def mean_sides(metric, out):
+    """Write the mean length of the edges at each vertex, 0 without any; one shared by two faces counts half in each."""
+    for v in prange(metric.offsets.shape[0] - 1):
+        total = count = 0.0
+        for i in range(metric.offsets[v], metric.offsets[v + 1]):
+            c = metric.corners[i]
+            for side in range(2):
+                h = c if side == 0 else previous_corner(c)
+                share = 0.5 if metric.partners[h] >= 0 else 1.0
+                total += share * metric.lengths[c // 3, (c % 3 + 2 - side) % 3]
+                count += share
+        out[v] = total / count if count > 0.0 else 0.0
+
+
+@parallel_kernel
 def defect_sensitivities(metric, areas, squares, densities):
     """Write for each vertex the sum of squares of the derivatives of its defect in the edge lengths, and the density.
 
@@ -218,7 +234,8 @@ def ring_means(x, offsets, neighbours, out):
             total = x[v, j]
             for i in range(first, last):
                 total += x[neighbours[i], j]
-            out[v, j] = total / (last - first + 1) if math.isfinite(total) else finite_mean(v, j, x, offsets, neighbours)
+            mean = total / (last - first + 1)
+            out[v, j] = mean if math.isfinite(total) else finite_mean(v, j, x, offsets, neighbours)
 
 
 @inner
