@@ -15,10 +15,13 @@ from rinow.curvature.length_noise import LengthNoise
 from rinow.kernels import arcs, chord_forms
 
 
+def rings_of(flow):
+    return flow.mesh.topology.neighbour_offsets, flow.mesh.topology.neighbours
+
+
 def terms_of(flow):
-    n, f = len(flow.areas), len(flow.metric.faces)
-    terms, spokes = np.empty((n, 5)), np.zeros((3 * f, 2))
-    chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, 4, terms, spokes)
+    terms, spokes = np.empty((len(flow.areas), 5)), np.empty((len(rings_of(flow)[1]), 2))
+    chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, rings_of(flow), 4, terms, spokes)
     return terms, spokes
 
 
@@ -27,7 +30,7 @@ def forms_of(mesh):
     terms, spokes = terms_of(flow)
     forms, smooth = np.empty((len(terms), 5)), np.empty(len(terms))
     data = (flow.defect_densities, flow.areas, terms, spokes, mesh.topology.vertex_is_manifold)
-    chord_forms.fit_forms(REACH * flow.spacing, *data, flow.metric, 4, forms, smooth)
+    chord_forms.fit_forms(REACH * flow.spacing, *data, flow.metric, rings_of(flow), 4, forms, smooth)
     return forms, smooth
 
 

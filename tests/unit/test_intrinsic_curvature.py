@@ -93,7 +93,9 @@ def test_one_step_is_a_regression_over_an_unrolled_neighbourhood(make, reach):
     smoothing.count_rows(*ball, counts)
     np.cumsum(counts, out=starts[1:])
     columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
-    smoothing.regression_rows(*ball, starts, columns, values, variances)
+    places, has_gap = np.empty((starts[-1], 2)), np.empty(n, np.bool_)
+    smoothing.row_places(*ball, starts, columns, places, has_gap)
+    smoothing.regression_rows(radii, flow.areas, starts, columns, places, has_gap, values, variances)
     for v in range(0, n, 30):
         expected = naive.regression_row(naive.develop(faces, length, v, radii[v]), flow.areas, radii[v])
         row = slice(starts[v], starts[v + 1])
@@ -229,3 +231,12 @@ def test_no_shape_is_refused(shape):
 def test_a_single_triangle_has_no_interior():
     c = surface_curvature(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), method="intrinsic")
     assert np.isnan(c.gaussian).all() and (c.status == VertexStatus.BOUNDARY).all()
+
+
+@pytest.mark.parametrize("make", [shapes.irregular_torus, shapes.irregular_ellipsoid])
+def test_curvature_of_lengths_does_not_know_the_orientation_of_faces(make):
+    shape = make(500)
+    turned = np.where(np.random.default_rng(3).random((len(shape.faces), 1)) < 1 / 3, shape.faces[:, ::-1], shape.faces)
+    expected, found = (intrinsic_curvature(TriangleMesh(shape.vertices, faces)) for faces in (shape.faces, turned))
+    np.testing.assert_allclose(found.gaussian, expected.gaussian, rtol=0, atol=1e-9 * np.max(np.abs(expected.gaussian)))
+    np.testing.assert_allclose(found.on_arcs, expected.on_arcs, atol=1e-9)

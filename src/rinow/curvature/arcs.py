@@ -50,11 +50,12 @@ class Arcs:
         """What the lengths and the areas of arcs change: a term to add, and then a factor, of all vertices."""
         flow, n = self.flow, self.flow.mesh.n_vertices
         terms, forms, smooth = np.empty((n, chord_forms.N_FORM)), np.empty((n, chord_forms.N_FORM)), np.empty(n)
-        spokes = np.zeros((3 * len(flow.metric.faces), 2))
-        chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, N_BLOCKS, terms, spokes)
+        rings = flow.mesh.topology.neighbour_offsets, flow.mesh.topology.neighbours
+        spokes = np.empty((len(rings[1]), 2))
+        chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, rings, N_BLOCKS, terms, spokes)
         is_fan, radii = flow.mesh.topology.vertex_is_manifold, REACH * flow.spacing
         data = (flow.defect_densities, flow.areas, terms, spokes)
-        chord_forms.fit_forms(radii, *data, is_fan, flow.metric, N_BLOCKS, forms, smooth)
+        chord_forms.fit_forms(radii, *data, is_fan, flow.metric, rings, N_BLOCKS, forms, smooth)
         ratios = np.empty(n)
         arcs.area_ratios(smooth, flow.metric, ratios)
         return np.einsum("vi,vi->v", terms, forms), ratios

@@ -62,10 +62,9 @@ class CurvatureFlow:
     def spacing(self) -> Floats:
         """(n_vertices,): distance of neighbours, averaged around each vertex: see `stencils.local_spacing`."""
         t, n = self.mesh.topology, self.mesh.n_vertices
-        f, k = np.divmod(t.edge_halfedges, 3)
-        lengths, ends = self.mesh.edge_lengths[f, (k + 2) % 3], t.edges.ravel()
-        sums = np.bincount(ends, np.repeat(lengths, 2), n)
-        edges = self.means(sums / np.maximum(np.bincount(ends, minlength=n), 1), 1)
+        edges = np.empty(n)
+        smoothing.mean_sides(self.metric, edges)
+        edges = self.means(edges, 1)
         shares = np.where(t.vertex_is_boundary, 0.5, 1.0)
         with np.errstate(all="ignore"):
             areas = self._ring_sums(self._ring_sums(self.mesh.vertex_areas)) / self._ring_sums(self._ring_sums(shares))
@@ -82,17 +81,19 @@ class CurvatureFlow:
         t, n = self.mesh.topology, self.mesh.n_vertices
         radii = REACH * self.spacing
         weights = self.areas.copy()
-        ball = (radii, weights, t.vertex_is_manifold, self.has_data, self.metric, N_BLOCKS)
+        ball = (radii, self.areas, t.vertex_is_manifold, self.has_data, self.metric, N_BLOCKS)
         counts, starts = np.empty(n, np.int64), np.zeros(n + 1, np.int64)
         smoothing.count_rows(*ball, counts)
         np.cumsum(counts, out=starts[1:])
         columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
-        sums = np.empty(n)
+        places, has_gap, sums = np.empty((starts[-1], 2)), np.empty(n, np.bool_), np.empty(n)
+        smoothing.row_places(*ball, starts, columns, places, has_gap)
+        regression = (radii, weights, starts, columns, places, has_gap, values, variances)
         for _ in range(BALANCE_SWEEPS):
-            smoothing.regression_rows(*ball, starts, columns, values, variances)
+            smoothing.regression_rows(*regression)
             smoothing.column_sums(starts, columns, values, self.areas, sums)
             np.divide(weights * self.areas, sums, out=weights, where=self.has_data & (sums > 0.1 * self.areas))
-        smoothing.regression_rows(*ball, starts, columns, values, variances)
+        smoothing.regression_rows(*regression)
         return starts, columns, values, variances
 
     @property

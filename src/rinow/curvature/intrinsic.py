@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -168,23 +169,26 @@ def _shrink(best: IntrinsicCurvature, flow: CurvatureFlow) -> None:
         best.gaussian[:] *= np.where(total > 0.0, np.maximum(1.0 - error / total, 0.0), 1.0)
 
 
-def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats) -> list[Candidate]:
-    """The estimates of one scale, for all orders."""
-    combinations = [combination(m, order) for order in range(1, ORDER + 1)] if m else [{0: 1.0}]
-    values = [powers.combined(c) if m else np.where(flow.has_data, powers[0], np.nan) for c in combinations]
-    variances = np.column_stack([_product(tau2, noise.variance(c)) for c in combinations])
-    variances[~np.isfinite(values[0])] = np.nan
+def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats) -> Iterator[Candidate]:
+    """The estimates of one scale, for all orders, one after the other to keep few of them in memory."""
     radius = np.sqrt(np.fmax(SUPPORT * m * noise.step, flow.spacing**2))
-    if not m:
-        variances = np.fmax(variances, flow.means(variances, VARIANCE_PASSES))
-        return [(values[0], variances[:, 0], np.zeros(len(radius)), radius)]
-    differences = [_difference(_reference(m, order + 1), c) for order, c in enumerate(combinations)]
-    seen = np.column_stack([_product(tau2, noise.variance(d)) for d in differences])
-    excess = np.column_stack([powers.combined(d) ** 2 for d in differences]) - seen
-    both = np.concatenate([variances, seen], axis=1)
-    variances, seen = np.split(np.fmax(both, flow.means(both, VARIANCE_PASSES)), 2, axis=1)
-    biases = np.fmax(flow.means(excess, max(PASSES, m)), FLOOR * seen)
-    return [(values[r], variances[:, r], biases[:, r], radius) for r in range(ORDER)]
+    for order in range(1, ORDER + 1 if m else 2):
+        taken = combination(m, order) if m else {0: 1.0}
+        values = powers.combined(taken) if m else np.where(flow.has_data, powers[0], np.nan)
+        variance = _product(tau2, noise.variance(taken))
+        variance[~np.isfinite(values)] = np.nan
+        variance = np.fmax(variance, flow.means(variance, VARIANCE_PASSES))
+        bias = _squared_bias(m, order, flow, noise, powers, tau2) if m else np.zeros(len(radius))
+        yield values, variance, bias, radius
+
+
+def _squared_bias(m: int, order: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats) -> Floats:
+    """What a candidate differs by from its reference, squared, less the noise of that."""
+    difference = _difference(_reference(m, order), combination(m, order))
+    seen = _product(tau2, noise.variance(difference))
+    excess = powers.combined(difference) ** 2 - seen
+    seen = np.fmax(seen, flow.means(seen, VARIANCE_PASSES))
+    return np.fmax(flow.means(excess, max(PASSES, m)), FLOOR * seen)
 
 
 def _product(noise: Floats, variance: Floats) -> Floats:

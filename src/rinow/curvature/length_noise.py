@@ -74,9 +74,10 @@ class LengthNoise:
 
     def level(self, flow: CurvatureFlow, powers: Powers) -> Floats:
         """(n_vertices,): variance of the edge lengths that the residuals of smooth fits show around each vertex."""
-        columns = np.full((len(flow.areas), len(NOISE_PROBES)), np.nan)
-        for i, (m, order) in enumerate(NOISE_PROBES):
+        least = np.full(len(flow.areas), np.nan)
+        for m, order in NOISE_PROBES:
             residuals = flow.areas * (powers[0] - powers.combined(combination(m, order)))
             with np.errstate(all="ignore"):
-                columns[:, i] = np.where(flow.has_data, residuals**2 / self.sensitivity, np.nan)
-        return np.fmin.reduce(flow.means(columns, LEVEL_PASSES), axis=1)
+                squares = np.where(flow.has_data, residuals**2 / self.sensitivity, np.nan)
+            np.fmin(least, flow.means(squares, LEVEL_PASSES), out=least)
+        return least

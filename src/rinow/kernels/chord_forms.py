@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from rinow.kernels._jit import inner, parallel_kernel, prange
-from rinow.kernels.development import end_beside, fan_angle, is_member, lay_out_fan
+from rinow.kernels.development import fan_angle, is_member, lay_out_fan
 from rinow.kernels.smoothing import CAPACITY, FULL_TURN, develop_ball
 
 N_FORM, N_POLY = 5, 6
@@ -50,15 +50,15 @@ def add_edge(derivative, length, x, y, row, out):
 
 
 @parallel_kernel
-def chord_terms(curvatures, areas, metric, n_blocks, terms, spokes):
+def chord_terms(curvatures, areas, metric, rings, n_blocks, terms, spokes):
     """Write the derivatives of defect over area in the five coefficients of the form, 0 without data, and the frame.
 
-    `spokes` gets the direction from the vertex of each corner to the next corner.
+    `rings` are the compressed rows of neighbours; `spokes` gets the direction of each neighbour of each vertex.
 
     The derivative of an angle is 1/height in the opposite side and -cot(far angle)/length in a side at it; that of an
     area is length cot(opposite angle)/2.
     """
-    n = curvatures.shape[0]
+    n, (offsets, neighbours) = curvatures.shape[0], rings
     for block in prange(n_blocks):
         members, slots = np.empty(CAPACITY, np.int64), np.zeros(n, np.int32)
         points, row = np.empty((CAPACITY, 2)), np.empty(N_FORM)
@@ -70,11 +70,11 @@ def chord_terms(curvatures, areas, metric, n_blocks, terms, spokes):
             for i in range(metric.offsets[v], metric.offsets[v + 1]):
                 c = metric.corners[i]
                 add_corner(c, curvatures[v], areas[v], k, metric, members, slots, points, row, terms[v])
-                w, column = end_beside(c, 0, metric.faces)
-                length = metric.lengths[c // 3, column]
-                spokes[c] = 0.0
-                if length > 0.0 and is_member(w, k, members, slots):
-                    spokes[c, 0], spokes[c, 1] = points[slots[w], 0] / length, points[slots[w], 1] / length
+            for i in range(offsets[v], offsets[v + 1]):
+                w = neighbours[i]
+                x, y = (points[slots[w], 0], points[slots[w], 1]) if is_member(w, k, members, slots) else (0.0, 0.0)
+                length = math.sqrt(x * x + y * y)
+                spokes[i, 0], spokes[i, 1] = (x / length, y / length) if length > 0.0 else (0.0, 0.0)
 
 
 @inner
@@ -97,7 +97,7 @@ def add_corner(c, curvature, area, n, metric, members, slots, points, row, out):
 
 
 @parallel_kernel
-def fit_forms(radii, curvatures, areas, terms, spokes, is_fan, metric, n_blocks, forms, smooth):
+def fit_forms(radii, curvatures, areas, terms, spokes, is_fan, metric, rings, n_blocks, forms, smooth):
     """Write the form at each vertex that leaves the curvatures around it smoothest, and the smooth curvature there.
 
     Defects over areas in a ball are fitted by a quadratic polynomial minus the effect of one form, both by least
@@ -116,7 +116,7 @@ def fit_forms(radii, curvatures, areas, terms, spokes, is_fan, metric, n_blocks,
                 continue
             k = develop_ball(v, radii[v], areas[v] > 0.0, metric, members, slots, points, counts)
             data = (curvatures, areas, terms, spokes)
-            count = normal_equations(k, radii[v], data, metric, members, slots, points, row, gram)
+            count = normal_equations(k, radii[v], data, rings, members, slots, points, row, gram)
             if count < FEWEST or not gram[N, N] > 0.0:
                 continue
             mean_square = gram[N, N] / gram[0, 0]
@@ -133,7 +133,7 @@ def fit_forms(radii, curvatures, areas, terms, spokes, is_fan, metric, n_blocks,
 
 
 @inner
-def normal_equations(n, radius, data, metric, members, slots, points, row, gram):
+def normal_equations(n, radius, data, rings, members, slots, points, row, gram):
     """Write the upper triangle of the sums of products of unknowns and data, weighted; the number of data."""
     curvatures, areas, terms, spokes = data
     gram[:] = 0.0
@@ -144,7 +144,7 @@ def normal_equations(n, radius, data, metric, members, slots, points, row, gram)
         weight = areas[w] * (1.0 - x * x - y * y)
         if not weight > 0.0:
             continue
-        cos, sin, mirror = axis_of(m, n, spokes, metric, members, slots, points)
+        cos, sin, mirror = axis_of(m, n, spokes, rings, members, slots, points)
         if mirror == 0.0:
             continue
         row[0], row[1], row[2], row[3], row[4], row[5] = 1.0, x, y, x * x, x * y, y * y
@@ -160,7 +160,7 @@ def normal_equations(n, radius, data, metric, members, slots, points, row, gram)
 
 
 @inner
-def axis_of(m, n, spokes, metric, members, slots, points):
+def axis_of(m, n, spokes, rings, members, slots, points):
     """Direction of the axis of the frame of member m, 1 or -1 if mirrored; 0 if none of its neighbours is a member.
 
     It is the turn that brings the spokes of its frame nearest to their places in the plane, by least squares.
@@ -168,14 +168,13 @@ def axis_of(m, n, spokes, metric, members, slots, points):
     if m == 0:
         return 1.0, 0.0, 1.0
     x = y = mirrored_x = mirrored_y = 0.0
-    w = members[m]
-    for i in range(metric.offsets[w], metric.offsets[w + 1]):
-        c = metric.corners[i]
-        q, _ = end_beside(c, 0, metric.faces)
+    w, (offsets, neighbours) = members[m], rings
+    for i in range(offsets[w], offsets[w + 1]):
+        q = neighbours[i]
         if is_member(q, n, members, slots):
             dx, dy = points[slots[q], 0] - points[m, 0], points[slots[q], 1] - points[m, 1]
-            a, b = dx * spokes[c, 0], dy * spokes[c, 1]
-            p, r = dy * spokes[c, 0], dx * spokes[c, 1]
+            a, b = dx * spokes[i, 0], dy * spokes[i, 1]
+            p, r = dy * spokes[i, 0], dx * spokes[i, 1]
             x, y = x + a + b, y + p - r
             mirrored_x, mirrored_y = mirrored_x + a - b, mirrored_y + p + r
     mirror = 1.0

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
+from rinow.kernels.adjacency import previous_corner
 from rinow.kernels.development import develop, fan_angle
 
 FULL_TURN = 2.0 * math.pi
@@ -17,22 +18,20 @@ FLATTEST = 1e-3
 """Where the spread of the data across is below this share of that along, it determines no slope across."""
 
 
-@kernel
-def weighted_moments(n, radius, areas, members, points, weights):
-    """Write the weights area (1 - (|u|/radius)²)³, 0 without data; their sum, means and covariances."""
+@inner
+def weighted_moments(radius, columns, points, areas, weights):
+    """Write the weights area (1 - (|u|/radius)²)³, not all 0; their sum, means and covariances."""
     total = mx = my = 0.0
-    for m in range(n):
+    for m in range(len(columns)):
         x, y = points[m, 0], points[m, 1]
         s = 1.0 - (x * x + y * y) / (radius * radius)
-        weights[m] = areas[members[m]] * s * s * s if s > 0.0 else 0.0
+        weights[m] = areas[columns[m]] * s * s * s
         total += weights[m]
         mx += weights[m] * x
         my += weights[m] * y
-    if total == 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     mx, my = mx / total, my / total
     xx = xy = yy = 0.0
-    for m in range(n):
+    for m in range(len(columns)):
         x, y = points[m, 0] - mx, points[m, 1] - my
         xx += weights[m] * x * x
         xy += weights[m] * x * y
@@ -57,7 +56,7 @@ def slope_terms(mx, my, xx, xy, yy):
     return along * cos, along * sin
 
 
-@kernel
+@inner
 def sees_gap(n, radius, areas, members, points):
     """Whether a member within the radius has no data."""
     for m in range(n):
@@ -76,6 +75,13 @@ def develop_ball(v, radius, is_closed, metric, members, slots, points, counts):
     return develop(v, radius, stretch, metric, members, slots, points, counts)
 
 
+@inner
+def is_inside(m, radius, areas, members, points):
+    """Whether member m has data and a weight."""
+    x, y = points[m, 0], points[m, 1]
+    return areas[members[m]] > 0.0 and 1.0 - (x * x + y * y) / (radius * radius) > 0.0
+
+
 @parallel_kernel
 def count_rows(radii, areas, is_fan, is_closed, metric, n_blocks, counts_out):
     """Write the number of data with a weight around each vertex."""
@@ -88,37 +94,49 @@ def count_rows(radii, areas, is_fan, is_closed, metric, n_blocks, counts_out):
             if is_fan[v]:
                 k = develop_ball(v, radii[v], is_closed[v], metric, members, slots, points, counts)
                 for m in range(k):
-                    if areas[members[m]] > 0.0 and points[m, 0] ** 2 + points[m, 1] ** 2 < radii[v] ** 2:
-                        counts_out[v] += 1
+                    counts_out[v] += is_inside(m, radii[v], areas, members, points)
 
 
 @parallel_kernel
-def regression_rows(radii, areas, is_fan, is_closed, metric, n_blocks, starts, columns, values, variances):
+def row_places(radii, areas, is_fan, is_closed, metric, n_blocks, starts, columns, places, has_gap):
+    """Write the data with a weight around each vertex, their places, and whether one without data is among them."""
+    n = radii.shape[0]
+    for block in prange(n_blocks):
+        members, slots = np.empty(CAPACITY, np.int64), np.zeros(n, np.int32)
+        points, counts = np.empty((CAPACITY, 2)), np.empty(CAPACITY, np.int64)
+        for v in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            i, has_gap[v] = starts[v], False
+            if i == starts[v + 1]:
+                continue
+            k = develop_ball(v, radii[v], is_closed[v], metric, members, slots, points, counts)
+            has_gap[v] = sees_gap(k, radii[v], areas, members, points)
+            for m in range(k):
+                if is_inside(m, radii[v], areas, members, points):
+                    columns[i] = members[m]
+                    places[i, 0], places[i, 1] = points[m, 0], points[m, 1]
+                    i += 1
+
+
+@parallel_kernel
+def regression_rows(radii, areas, starts, columns, places, has_gap, values, variances):
     """Write the rows: weights of the curvatures that give the local linear regression at each vertex.
 
     Near a boundary they fade into the local mean.  `variances` gets the mean square of the distance along an axis.
     """
-    n = radii.shape[0]
-    for block in prange(n_blocks):
-        members, slots = np.empty(CAPACITY, np.int64), np.zeros(n, np.int32)
-        points, counts, weights = np.empty((CAPACITY, 2)), np.empty(CAPACITY, np.int64), np.empty(CAPACITY)
-        for v in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            variances[v] = np.nan
-            if starts[v] == starts[v + 1]:
-                continue
-            k = develop_ball(v, radii[v], is_closed[v], metric, members, slots, points, counts)
-            total, mx, my, xx, xy, yy = weighted_moments(k, radii[v], areas, members, points, weights)
-            variances[v] = 0.5 * (xx + yy)
-            gx, gy = slope_terms(mx, my, xx, xy, yy)
-            if sees_gap(k, radii[v], areas, members, points):
-                share = max(1.0 - (gx * mx + gy * my) / ONE_SIDED, 0.0)
-                gx, gy = share * gx, share * gy
-            i = starts[v]
-            for m in range(k):
-                if areas[members[m]] > 0.0 and points[m, 0] ** 2 + points[m, 1] ** 2 < radii[v] ** 2:
-                    columns[i] = members[m]
-                    values[i] = weights[m] / total * (1.0 - gx * (points[m, 0] - mx) - gy * (points[m, 1] - my))
-                    i += 1
+    for v in prange(len(radii)):
+        row = slice(starts[v], starts[v + 1])
+        variances[v] = np.nan
+        if starts[v] == starts[v + 1]:
+            continue
+        points, weights = places[row], values[row]
+        total, mx, my, xx, xy, yy = weighted_moments(radii[v], columns[row], points, areas, weights)
+        variances[v] = 0.5 * (xx + yy)
+        gx, gy = slope_terms(mx, my, xx, xy, yy)
+        if has_gap[v]:
+            share = max(1.0 - (gx * mx + gy * my) / ONE_SIDED, 0.0)
+            gx, gy = share * gx, share * gy
+        for m in range(len(weights)):
+            weights[m] *= (1.0 - gx * (points[m, 0] - mx) - gy * (points[m, 1] - my)) / total
 
 
 @parallel_kernel
@@ -138,6 +156,21 @@ def column_sums(starts, columns, values, factors, out):
     for v in range(starts.shape[0] - 1):
         for i in range(starts[v], starts[v + 1]):
             out[columns[i]] += factors[v] * values[i]
+
+
+@parallel_kernel
+def mean_sides(metric, out):
+    """Write the mean length of the edges at each vertex, 0 without any; one shared by two faces counts half in each."""
+    for v in prange(metric.offsets.shape[0] - 1):
+        total = count = 0.0
+        for i in range(metric.offsets[v], metric.offsets[v + 1]):
+            c = metric.corners[i]
+            for side in range(2):
+                h = c if side == 0 else previous_corner(c)
+                share = 0.5 if metric.partners[h] >= 0 else 1.0
+                total += share * metric.lengths[c // 3, (c % 3 + 2 - side) % 3]
+                count += share
+        out[v] = total / count if count > 0.0 else 0.0
 
 
 @parallel_kernel
@@ -196,13 +229,24 @@ def half_heights(h, areas, metric):
 def ring_means(x, offsets, neighbours, out):
     """Write the mean of the finite values in each column of x at each vertex and its neighbours, nan without any."""
     for v in prange(offsets.shape[0] - 1):
+        first, last = offsets[v], offsets[v + 1]
         for j in range(x.shape[1]):
-            total, count = 0.0, 0
-            if math.isfinite(x[v, j]):
-                total, count = x[v, j], 1
-            for i in range(offsets[v], offsets[v + 1]):
-                y = x[neighbours[i], j]
-                if math.isfinite(y):
-                    total += y
-                    count += 1
-            out[v, j] = total / count if count > 0 else np.nan
+            total = x[v, j]
+            for i in range(first, last):
+                total += x[neighbours[i], j]
+            mean = total / (last - first + 1)
+            out[v, j] = mean if math.isfinite(total) else finite_mean(v, j, x, offsets, neighbours)
+
+
+@inner
+def finite_mean(v, j, x, offsets, neighbours):
+    """The mean of the finite values in column j at v and its neighbours, nan without any."""
+    total, count = 0.0, 0
+    if math.isfinite(x[v, j]):
+        total, count = x[v, j], 1
+    for i in range(offsets[v], offsets[v + 1]):
+        y = x[neighbours[i], j]
+        if math.isfinite(y):
+            total += y
+            count += 1
+    return total / count if count > 0 else np.nan
