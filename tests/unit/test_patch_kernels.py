@@ -11,7 +11,7 @@ from naive import tori as naive_tori
 from rinow import TriangleMesh
 from rinow.curvature.centres import cover, flat_frames, members_of_discs, sizes_of_discs
 from rinow.curvature.sheet import patch_sheet
-from rinow.kernels import balls, nested_fits, patches
+from rinow.kernels import balls, bends, nested_fits, patches
 from rinow.kernels.osculating_torus import arc_place, offset_forms, torus_coordinates, torus_frame
 
 TORUS = shapes.noisy(shapes.irregular_torus(600), 0.02)
@@ -139,17 +139,24 @@ def fit_of(u, v, order, reach):
     return work, np.array(naive_tori.polynomial_columns(points[:3].T.tolist(), order, reach)).reshape(-1, len(u)).T
 
 
+def variances_beside(places, order, work):
+    points = np.array(places).T.copy()
+    bends.bend_variances(points, len(places), 3.0, 3.0, order, work)
+    return work.bends[: len(places)].copy()
+
+
 @pytest.mark.parametrize("order", [2, 5, 7])
 def test_variance_beside_the_centre_is_that_of_least_squares(order):
     u, v = np.random.default_rng(33).uniform(-2, 2, (2, 60))
     work, columns = fit_of(u, v, order, 3.0)
     covariance = np.linalg.inv(columns.T @ columns)
-    for place in ((0.0, 0.0), (1.0, -0.4)):
+    places = [(0.0, 0.0), (1.0, -0.4), (-0.3, 1.5)]
+    at_centre, *beside = variances_beside(places, order, work)
+    for place, found in zip(places[1:], beside, strict=True):
         g = second_derivatives(order, 3.0, *place)
-        found = nested_fits.bend_variance(*place, 3.0, order, work, np.empty((3, 45)))
         assert found == pytest.approx(np.trace(g @ covariance @ g.T), rel=1e-6)
     c = work.covariances[order]
-    assert nested_fits.bend_variance(0.0, 0.0, 3.0, order, work, np.empty((3, 45))) == pytest.approx(c[0] + c[3] + c[5])
+    assert at_centre == pytest.approx(c[0] + c[3] + c[5])
 
 
 def test_points_in_rows_fix_a_polynomial_at_the_centre_and_not_beside_it():
@@ -157,9 +164,9 @@ def test_points_in_rows_fix_a_polynomial_at_the_centre_and_not_beside_it():
     x, y = (g.ravel() for g in np.meshgrid(np.arange(-3, 4.0), np.arange(-3, 4.0)))
     near = x * x + y * y < 2.9**2
     u, v = np.stack([x[near], y[near]]) + 0.02 * np.random.default_rng(34).normal(size=(2, near.sum()))
-    assert len(u) < patches.ROOMY * nested_fits.TERMS[5]
+    assert len(u) < nested_fits.ROOMY * nested_fits.TERMS[5]
     work, _ = fit_of(u, v, 5, 3.0)
-    at_centre, beside = (nested_fits.bend_variance(s, 0.0, 3.0, 5, work, np.empty((3, 45))) for s in (0.0, 1.0))
+    at_centre, beside = variances_beside([(0.0, 0.0), (1.0, 0.0)], 5, work)
     assert beside > 10.0 * at_centre
 
 

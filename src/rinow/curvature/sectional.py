@@ -247,10 +247,13 @@ def _doubt_ends(mesh: TriangleMesh, estimate: Estimate) -> None:
 
     The few points on one side of a short boundary may lie almost on a line, and show any curvature then.
     """
-    t, shortest = mesh.topology, np.full(mesh.n_vertices, np.inf)
-    lengths = np.linalg.norm(np.subtract(*mesh.vertices[t.edges.T]), axis=1)
-    np.minimum.at(shortest, t.edges.ravel(), np.repeat(lengths, 2))
+    t = mesh.topology
     at_ends = np.flatnonzero(t.vertex_is_boundary & np.isfinite(estimate.gaussian))
+    if not len(at_ends):
+        return
+    edges, shortest = t.edges[t.vertex_is_boundary[t.edges].any(axis=1)], np.full(mesh.n_vertices, np.inf)
+    lengths = np.linalg.norm(np.subtract(*mesh.vertices[edges.T]), axis=1)
+    np.minimum.at(shortest, edges.ravel(), np.repeat(lengths, 2))
     largest = np.maximum(np.abs(estimate.k1[at_ends]), np.abs(estimate.k2[at_ends]))  # type: ignore[index]
     estimate.gaussian[at_ends[largest * shortest[at_ends] > 2.0]] = np.nan
 

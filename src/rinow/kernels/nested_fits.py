@@ -27,6 +27,9 @@ ONE_SIDED = 0.1
 Monomials about the centre of half a disc depend on each other so much that order 6 cannot be told; about the mean of
 the points they do not.  The polynomials are the same.
 """
+ROOMY = 2.0
+"""Points over unknowns below which a fit may be loose beside its centre."""
+CROWD = int(ROOMY * TERMS[MAX_ORDER])
 SPARE, SURPLUS = 2, 1.25
 """An order needs SPARE more points than unknowns, and above 2 also SURPLUS as many."""
 
@@ -37,6 +40,7 @@ class Fits(NamedTuple):
     moments[ball, b, a] and offsets[ball, b, a] are the sums of u^a v^b and of w u^a v^b, `sums` and `offset_sums` those
     of one ball by degree, u and v being counted from `origin`.  Of the points still to be added `powers` has u^a and
     `places` has v and w.  targets[i] are value and derivatives f1, f2, f11/2, f12, f22/2 of a monomial at the centre.
+    `monomials`, `columns` and `bends` serve points beside it, of balls of at most CROWD points.
     """
 
     origin: np.ndarray
@@ -54,6 +58,10 @@ class Fits(NamedTuple):
     jets: np.ndarray
     covariances: np.ndarray
     residuals: np.ndarray
+
+    monomials: np.ndarray
+    columns: np.ndarray
+    bends: np.ndarray
 
 
 @inner
@@ -75,6 +83,9 @@ def fits(n_shells):
         np.zeros((MAX_ORDER + 1, 6)),
         np.zeros((MAX_ORDER + 1, 6)),
         np.zeros(MAX_ORDER + 1),
+        np.ones((TERMS[MAX_ORDER - 2], CROWD)),
+        np.zeros((p, 3 * CROWD)),
+        np.zeros(CROWD),
     )
 
 
@@ -191,17 +202,16 @@ def write_equation(i, order, work):
 
 
 @inlined
-def subtract_earlier(k, end, factor):
-    """Subtract from row k of the equations what the earlier rows of the factor explain."""
-    row, n = factor[k, k:end], end - k  # slices: loops from 0 on become vector code
+def subtract_earlier(k, first, end, factor, rows):
+    """Subtract from columns of row k what the earlier rows, by column k of the factor, explain."""
+    row, n = rows[k, first:end], end - first  # slices: loops from 0 on become vector code
     for m in range(0, k - AT_ONCE + 1, AT_ONCE):
-        a, b, c, d = factor[m, k:end], factor[m + 1, k:end], factor[m + 2, k:end], factor[m + 3, k:end]
-        fa, fb, fc, fd = a[0], b[0], c[0], d[0]
+        a, b, c, d = rows[m, first:end], rows[m + 1, first:end], rows[m + 2, first:end], rows[m + 3, first:end]
+        fa, fb, fc, fd = factor[m, k], factor[m + 1, k], factor[m + 2, k], factor[m + 3, k]
         for j in range(n):
             row[j] -= (fa * a[j] + fb * b[j]) + (fc * c[j] + fd * d[j])
     for m in range(k // AT_ONCE * AT_ONCE, k):
-        a = factor[m, k:end]
-        fa = a[0]
+        a, fa = rows[m, first:end], factor[m, k]
         for j in range(n):
             row[j] -= fa * a[j]
 
@@ -224,7 +234,7 @@ def fit_orders(shell, reach, order, work):
         row = factor[k]
         write_equation(k, order, work)
         norm = row[k]
-        subtract_earlier(k, p + 7, factor)
+        subtract_earlier(k, k, p + 7, factor, factor)
         if not row[k] > PIVOT * norm:
             return degree - 1
         inverse, rest = 1.0 / math.sqrt(row[k]), factor[k, k : p + 7]
@@ -247,23 +257,6 @@ def fit_orders(shell, reach, order, work):
             work.residuals[degree] = max(left, 0.0)
             degree += 1
     return order
-
-
-@inner
-def bend_variance(u, v, reach, order, work, z):
-    """Sum of the variances of the second derivatives of a fit at (u, v), for noise of variance 1; z is (3, 45)."""
-    x, y, total, factor = u / reach, v / reach, 0.0, work.factor
-    for k in range(TERMS[order]):
-        a, b = DEGREES[k] - V_POWERS[k], V_POWERS[k]
-        z[0, k] = a * (a - 1) * x ** max(a - 2, 0) * y**b
-        z[1, k] = a * b * x ** max(a - 1, 0) * y ** max(b - 1, 0)
-        z[2, k] = b * (b - 1) * x**a * y ** max(b - 2, 0)
-        for c in range(3):
-            for i in range(k):
-                z[c, k] -= factor[i, k] * z[c, i]
-            z[c, k] *= factor[k, k]
-            total += z[c, k] * z[c, k]
-    return total / reach**4
 
 
 @inner

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rinow.kernels import monge, nested_fits, stencils
+from rinow.kernels import bends, monge, nested_fits, stencils
 from rinow.kernels._jit import inlined, inner, kernel, parallel_kernel, prange
-from rinow.kernels.nested_fits import TERMS
+from rinow.kernels.nested_fits import ROOMY, TERMS
 from rinow.kernels.osculating_torus import arc_place, offset_forms, torus_frame
 from rinow.kernels.patch_fits import STEEP, curvature_and_gradients, forms_at_centre
 
@@ -17,9 +17,9 @@ SHARP = 2.0
 """Curvature, over the inverse spacing, that no mesh resolves: beyond it a fit has failed."""
 FALLEN = 1e-6
 """Weight of a fit whose order had to be lowered."""
-ROOMY, LOOSE = 2.0, 40.0
-"""Points over unknowns below which a fit may be loose beside its centre: more than so many times the variance there.
-Its weight falls with the square of that ratio."""
+LOOSE = 40.0
+"""A fit is loose beside its centre where it has more than so many times the variance there.  Its weight falls with the
+square of that ratio."""
 SYMMETRIC = 1.5
 """Largest ratio of variances of stencils that count as symmetric."""
 N_VALUES = 15
@@ -166,22 +166,26 @@ def chosen_order(wanted, top, fit):
 def write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values):
     """Write the weighted values of one patch at the vertices nearer than patch.core spacings to its centre."""
     k, centre, points = start, ball.members[0], ball.points
-    c, room = fit.covariances[order], np.empty((3, TERMS[-1]))
-    at_centre, is_crowded = c[0] + c[3] + c[5], size < ROOMY * TERMS[order]
-    spacing, core = sheet.spacing[centre], patch.core
+    c, spacing, core = fit.covariances[order], sheet.spacing[centre], patch.core
+    at_centre, is_crowded, inside = c[0] + c[3] + c[5], size < ROOMY * TERMS[order], -1
+    if is_crowded:
+        bends.bend_variances(points, size, core, reach, order, fit)
     most = patch.risk ** (-patch.power) * (1.0 if order >= patch.order else FALLEN)
     for j in range(size):
         u, v, q = points[0, j], points[1, j], ball.members[j]
-        s = (u * u + v * v) / (core * core)
-        if s >= 1.0 or k == stop or stencils.squared_distance(sheet.vertices, centre, q) >= (core * spacing) ** 2:
+        s = u * u + v * v
+        if not s < core * core:
+            continue
+        inside += 1
+        if k == stop or stencils.squared_distance(sheet.vertices, centre, q) >= (core * spacing) ** 2:
             continue
         out = values[k]
         x, y = u - fit.origin[0], v - fit.origin[1]
         jet = polynomial(coefficients, order, reach, x, y)
         if not write_values(u, v, jet, frame, spacing, out):
             continue
-        weight = (1.0 - s) ** 2 * most
-        gain = nested_fits.bend_variance(x, y, reach, order, fit, room) / at_centre if is_crowded else 1.0
+        weight = (1.0 - s / (core * core)) ** 2 * most
+        gain = fit.bends[inside] / at_centre if is_crowded else 1.0
         risk = patch.risk * max(gain, 1.0)
         weight *= min(1.0, LOOSE / gain) ** 2
         sign = 1.0
