@@ -1,4 +1,4 @@
-"""Meshes of surfaces without positions: edge lengths alone."""
+"""Surfaces without positions: meshes by their edge lengths, and matrices of distances."""
 
 import numpy as np
 
@@ -36,3 +36,14 @@ def hyperbolic_patch(n=1500):
     d = [P[F[:, (k + 1) % 3]] - P[F[:, (k + 2) % 3]] for k in range(3)]
     chords = [np.sqrt(e[:, 0] ** 2 + e[:, 1] ** 2 - e[:, 2] ** 2) for e in d]
     return IntrinsicMesh(F, 2 * np.arcsinh(np.stack(chords, 1) / 2)), r
+
+
+def sphere_net(n, diameter=None):
+    """Geodesic distances of a Fibonacci net of the unit sphere, or of one with the given diameter of the net."""
+    z = 1 - (2 * np.arange(n) + 1) / n
+    angle = np.pi * (1 + np.sqrt(5)) * np.arange(n)
+    P = np.stack([np.sqrt(1 - z * z) * np.cos(angle), np.sqrt(1 - z * z) * np.sin(angle), z], axis=1)
+    D = np.arccos(np.clip(P @ P.T, -1, 1))
+    D = (D + D.T) / 2
+    np.fill_diagonal(D, 0)
+    return D if diameter is None else D * (diameter / D.max())

@@ -8,6 +8,7 @@ import pytest
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import pdist, squareform
 
+import metric_shapes
 from naive import correspondences as naive
 from rinow.comparison.clock import Clock
 from rinow.comparison.gromov_hausdorff import first_interval
@@ -34,17 +35,6 @@ def torus(n, m):
     )
     D = dijkstra(np.where(near, squareform(pdist(P)), 0.0))
     return np.minimum(D, D.T)
-
-
-def sphere(n, diameter):
-    """A Fibonacci net of a sphere, with the geodesic metric scaled to a diameter."""
-    z = 1 - (2 * np.arange(n) + 1) / n
-    angle = math.pi * (1 + math.sqrt(5)) * np.arange(n)
-    P = np.stack([np.sqrt(1 - z * z) * np.cos(angle), np.sqrt(1 - z * z) * np.sin(angle), z], axis=1)
-    D = np.arccos(np.clip(P @ P.T, -1, 1))
-    D = (D + D.T) / 2
-    np.fill_diagonal(D, 0)
-    return D * (diameter / D.max())
 
 
 @pytest.mark.parametrize("seed", range(60, 84))
@@ -75,7 +65,7 @@ def test_refutes_what_no_map_attains(seed):
 def test_torus_and_sphere():
     """Points at the hole of the torus have no antipodes; one of them alone gives the bound by eccentricities."""
     X = torus(24, 12)
-    Y = sphere(300, X.max())
+    Y = metric_shapes.sphere_net(300, X.max())
     interval = first_interval(X, Y, 0.0)
     known = interval.lower
     assert FewPoints(X, Y).outcome(1.005 * known, UNLIMITED, Clock(math.inf)) == REFUTED

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import pdist, squareform
 
+import metric_shapes
 from naive import correspondences as naive
 from rinow import gromov_hausdorff
 from rinow.comparison.clock import Clock
@@ -28,17 +29,6 @@ def polygon(n):
     """Vertices of a regular polygon on a circle of length 2π."""
     steps = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
     return np.minimum(steps, n - steps) * (2 * math.pi / n)
-
-
-def sphere(n):
-    """A Fibonacci net of the unit sphere, with the geodesic metric."""
-    z = 1 - (2 * np.arange(n) + 1) / n
-    angle = math.pi * (1 + math.sqrt(5)) * np.arange(n)
-    P = np.stack([np.sqrt(1 - z * z) * np.cos(angle), np.sqrt(1 - z * z) * np.sin(angle), z], axis=1)
-    D = np.arccos(np.clip(P @ P.T, -1, 1))
-    D = (D + D.T) / 2
-    np.fill_diagonal(D, 0)
-    return D
 
 
 @pytest.mark.parametrize("seed", range(40, 52))
@@ -86,7 +76,7 @@ def test_circle_and_sphere():
 
     The other half of these points is opposite to them and would say no more.
     """
-    Y = sphere(300)
+    Y = metric_shapes.sphere_net(300)
     A = spread_points(Y, 20, opposites=True)
     bound = SubsetBound(Y[np.ix_(A, A)], polygon(24), 2 * 0.5 + math.pi / 12)
     assert bound.interval.lower < bound.interval.upper
@@ -97,7 +87,7 @@ def test_circle_and_sphere():
 
 def test_opposite_points_are_not_taken():
     assert abs(sum_to_opposite(polygon(12)) - math.pi) < 1e-12  # rounding of sums
-    assert abs(sum_to_opposite(sphere(200)) - math.pi) < 0.1  # the points are 0.25 apart
+    assert abs(sum_to_opposite(metric_shapes.sphere_net(200)) - math.pi) < 0.1  # the points are 0.25 apart
     assert math.isnan(sum_to_opposite(cloud(np.random.default_rng(4), 50)))
     chosen = spread_points(polygon(12), 12, opposites=True)
     assert len(chosen) == len({i % 6 for i in chosen.tolist()}) == 6
@@ -105,7 +95,7 @@ def test_opposite_points_are_not_taken():
 
 
 def test_known_bound_is_kept_and_time_may_be_over():
-    X, Y = polygon(8), sphere(20)
+    X, Y = polygon(8), metric_shapes.sphere_net(20)
     assert bound_by_subsets(X, Y, (0.1, 0.1), 0.75, Clock(0.0)) == 0.75
     result = gromov_hausdorff(X, Y, time_limit=0, covering_radii=(math.pi / 8, 0.7))
     assert 0.0 <= result.lower <= math.pi / 3 <= result.upper

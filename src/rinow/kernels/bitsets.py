@@ -83,3 +83,12 @@ def prefixes(order, out):
         for k in range(order.shape[1]):
             out[i, k + 1] = out[i, k]
             insert(out[i, k + 1], order[i, k])
+
+
+@kernel
+def first_point(words):
+    """First point of a set, -1 if it is empty."""
+    for w in range(words.shape[0]):
+        if words[w] != ZERO:
+            return (w << 6) + lowest_bit(words[w])
+    return -1

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rinow.kernels._jit import kernel
-from rinow.kernels.bitsets import ZERO, bit, contains, lowest_bit, popcount
+from rinow.kernels.bitsets import ZERO, bit, contains, first_point, lowest_bit, popcount
 from rinow.kernels.correspondences import UNFINISHED, clear, delete, mark_all, propagate, restrict
 
 PAUSED, FOUND, EXHAUSTED = 0, 1, 2
@@ -224,18 +224,9 @@ def _pairs_left(problem, relation, x, y):
 def _read(relation, stack, depth, f, g):
     """Read a map each way from rows and columns with one pair, and from the decisions."""
     for x in range(f.shape[0]):
-        f[x] = _first(relation.rows[x])
+        f[x] = first_point(relation.rows[x])
     for y in range(g.shape[0]):
-        g[y] = _first(relation.columns[y])
+        g[y] = first_point(relation.columns[y])
     for d in range(depth):
         x, y = stack.decisions[d, 0], stack.decisions[d, 1]
         f[x], g[y] = y, x
-
-
-@kernel
-def _first(words):
-    """First point of a set, -1 if it is empty."""
-    for w in range(words.shape[0]):
-        if words[w] != ZERO:
-            return (w << 6) + lowest_bit(words[w])
-    return -1

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rinow.kernels._jit import inner, kernel
-from rinow.kernels.bitsets import ONE, ZERO, bit, contains, discard, insert, lowest_bit, popcount
+from rinow.kernels.bitsets import ONE, ZERO, bit, contains, discard, first_point, insert, lowest_bit, popcount
 from rinow.kernels.correspondence_search import EXHAUSTED, FOUND, PAUSED, fixes
 from rinow.kernels.correspondences import Relation
 
@@ -126,8 +126,8 @@ def _choose(stack, depth, weights):
 def _decide(problem, stack, depth, place, weights):
     """Decide for the first pair of a row or column and write what it leaves; whether that is not nothing; the work."""
     n, m = stack.rows.shape[1], stack.columns.shape[1]
-    x = place if place < n else _first(stack.columns[depth, place - n])
-    y = place - n if place >= n else _first(stack.rows[depth, place])
+    x = place if place < n else first_point(stack.columns[depth, place - n])
+    y = place - n if place >= n else first_point(stack.rows[depth, place])
     stack.decisions[depth, 0], stack.decisions[depth, 1] = x, y
     X, Y, now, after = problem.X, problem.Y, _relation(stack, depth), _relation(stack, depth + 1)
     rows = (now.rows, now.row_counts, after.rows, after.row_counts, stack.changed_rows)
@@ -258,12 +258,3 @@ def _unsupported(own, support, near, code, out):
             if left == ZERO:
                 return False
     return True
-
-
-@inner
-def _first(words):
-    """First point of a set that is not empty."""
-    for w in range(words.shape[0]):
-        if words[w] != ZERO:
-            return (w << 6) + lowest_bit(words[w])
-    return -1
