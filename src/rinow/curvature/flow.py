@@ -82,9 +82,9 @@ class CurvatureFlow:
         radii = REACH * self.spacing
         weights = self.areas.copy()
         ball = (radii, self.areas, t.vertex_is_manifold, self.has_data, self.metric, N_BLOCKS)
-        counts, starts = np.empty(n, np.int64), np.zeros(n + 1, np.int64)
-        smoothing.count_rows(*ball, counts)
-        np.cumsum(counts, out=starts[1:])
+        starts = np.zeros(n + 1, np.int64)
+        smoothing.count_rows(*ball, starts[1:])
+        np.cumsum(starts, out=starts)
         columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
         places, has_gap, sums = np.empty((starts[-1], 2)), np.empty(n, np.bool_), np.empty(n)
         smoothing.row_places(*ball, starts, columns, places, has_gap)
@@ -92,7 +92,8 @@ class CurvatureFlow:
         for _ in range(BALANCE_SWEEPS):
             smoothing.regression_rows(*regression)
             smoothing.column_sums(starts, columns, values, self.areas, sums)
-            np.divide(weights * self.areas, sums, out=weights, where=self.has_data & (sums > 0.1 * self.areas))
+            is_seen = self.has_data & (sums > 0.1 * self.areas)
+            np.multiply(weights, np.divide(self.areas, sums, out=sums, where=is_seen), out=weights, where=is_seen)
         smoothing.regression_rows(*regression)
         return starts, columns, values, variances
 
