@@ -54,7 +54,8 @@ class SurfaceCurvature:
     gaussian : (n_vertices,) ndarray of float
         Gaussian curvature, in 1/length².
     mean, k1, k2 : (n_vertices,) ndarray of float
-        Mean and principal curvatures, in 1/length, k1 >= k2.  Convex with outward normal is positive.
+        Mean and principal curvatures, in 1/length, k1 >= k2.  Convex with outward normal is positive.  K and H are
+        estimated each by itself; where noise makes H² < K, k1 = k2 = H and their product is not K.
     shape_index : (n_vertices,) ndarray of float
         (2/π) atan((k1 + k2)/(k1 - k2)): 1 for a cap, 0.5 a ridge, 0 a saddle or a plane, -1 a cup.
     curvedness : (n_vertices,) ndarray of float
