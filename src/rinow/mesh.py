@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
 from rinow._arrays import as_floats, as_index_tuples, as_points, read_only
+from rinow._printing import OneLine
 from rinow.errors import InvalidInputError, InvalidMeshError
 from rinow.kernels import triangles
 from rinow.topology import Topology
@@ -23,7 +24,7 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 
-class _Mesh:
+class _Mesh(OneLine):
     """What edge lengths alone tell; both kinds of mesh share it."""
 
     faces: Indices
@@ -118,7 +119,7 @@ class _Mesh:
         return float(self.edge_lengths[f, (k + 2) % 3].mean()) if len(f) else float("nan")
 
 
-@dataclass(frozen=True, eq=False, init=False)
+@dataclass(frozen=True, eq=False, init=False, repr=False)
 class IntrinsicMesh(_Mesh):
     """A triangulated surface known by its edge lengths only.
 
@@ -181,7 +182,7 @@ class IntrinsicMesh(_Mesh):
             )
 
 
-@dataclass(frozen=True, eq=False, init=False)
+@dataclass(frozen=True, eq=False, init=False, repr=False)
 class TriangleMesh(_Mesh):
     """A triangulated surface with a position for every vertex.
 
@@ -219,7 +220,7 @@ class TriangleMesh(_Mesh):
         V = as_points(vertices, "vertices", 3).copy()
         if len(V) == 0:
             raise InvalidMeshError("vertices is empty; a mesh has at least one vertex.")
-        data = {str(name): np.asarray(values) for name, values in (vertex_data or {}).items()}
+        data = {str(name): np.asarray(values) for name, values in _as_mapping(vertex_data).items()}
         for name, values in data.items():
             if values.shape[:1] != (len(V),):
                 raise InvalidInputError(
@@ -311,6 +312,13 @@ class TriangleMesh(_Mesh):
         rank[order] = np.arange(len(order))
         vertex_map = rank[vertex_map].astype(np.intp)
         return TriangleMesh(self.vertices[first[order]], vertex_map[self.faces]), vertex_map
+
+
+def _as_mapping(vertex_data: Any) -> Mapping[str, ArrayLike]:
+    if isinstance(vertex_data, Mapping | None):
+        return vertex_data or {}
+    kind = type(vertex_data).__name__
+    raise InvalidInputError(f"vertex_data is of type {kind}; give a mapping of names to arrays.")
 
 
 def _as_faces(faces: ArrayLike, n_vertices: int | None) -> Indices:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._printing import OneLine
 from rinow.comparison import bounds, steps
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import MAP, RELATION, Engine, worst_of
@@ -23,8 +24,8 @@ Indices = NDArray[np.intp]
 Flags = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class EpsilonIsometry:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class EpsilonIsometry(OneLine):
     """Whether an ε-isometry exists, and one.
 
     Attributes
@@ -39,8 +40,8 @@ class EpsilonIsometry:
     map: Indices
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Approximation:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Approximation(OneLine):
     """Whether two spaces are (ε, δ)-approximations of each other, and the nets that show it.
 
     Attributes

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
+from rinow._printing import OneLine
 from rinow.comparison.correspondence import uniform_distance
 from rinow.comparison.gromov_hausdorff import gromov_hausdorff
 from rinow.comparison.hausdorff import as_point_set, hausdorff_distance
@@ -23,8 +24,8 @@ __all__ = ["DistanceMatrix", "distance_matrix"]
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class DistanceMatrix:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class DistanceMatrix(OneLine):
     """Bounds of the distances between N spaces.
 
     Attributes

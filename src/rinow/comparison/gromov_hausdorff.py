@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._printing import OneLine
 from rinow.comparison import bounds, large, steps
 from rinow.comparison.alignment import align
 from rinow.comparison.clock import Clock
@@ -27,8 +28,8 @@ SHARE_OF_NETS, SHARE_OF_MESHES = 0.3, 0.85
 """Share of the time for the comparison of nets; the rest goes into maps of subsets.  On meshes these gain little."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class GromovHausdorff:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class GromovHausdorff(OneLine):
     """Bounds of a Gromov-Hausdorff distance with their certificates.
 
     Attributes

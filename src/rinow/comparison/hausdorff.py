@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from rinow._arrays import as_indices, as_points
+from rinow._printing import OneLine
 from rinow.comparison.hausdorff_surfaces import surface_distance
 from rinow.comparison.surface_tree import frame_of, surface_of_mesh, surface_of_points
 from rinow.errors import InvalidInputError, InvalidMeshError
@@ -24,8 +25,8 @@ Indices = NDArray[np.intp]
 _ENTRIES = 1 << 22  # of a distance matrix copied at one time
 
 
-@dataclass(frozen=True, slots=True)
-class HausdorffDistance:
+@dataclass(frozen=True, slots=True, repr=False)
+class HausdorffDistance(OneLine):
     """The Hausdorff distance of two sets as an interval, with the points that show it.
 
     Attributes

@@ -12,6 +12,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import maximum_bipartite_matching
 
 from rinow._arrays import as_indices
+from rinow._printing import OneLine
 from rinow.comparison import steps
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, Engine, worst_of
@@ -26,8 +27,8 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LipschitzDistance:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class LipschitzDistance(OneLine):
     """Bounds of a Lipschitz distance with their certificates.
 
     Attributes

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._arrays import as_floats
+from rinow._printing import OneLine
 from rinow.curvature.graph_rows import N_BLOCKS, Arcs, as_arcs
 from rinow.curvature.graph_wald import wald_at_nodes
 from rinow.errors import InvalidInputError
@@ -22,8 +23,8 @@ Indices = NDArray[np.intp]
 KINDS = ("wald", "menger", "haantjes")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class GraphCurvature:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class GraphCurvature(OneLine):
     """Curvature of a graph, in the order of its nodes and of `edge_index`.
 
     Attributes

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._arrays import as_floats
+from rinow._printing import OneLine
 from rinow.curvature.space_fit import N_ORDERS, fit_at_first
 from rinow.curvature.status import VertexStatus
 from rinow.errors import InvalidInputError
@@ -49,8 +50,8 @@ BORDER_GAP, BORDER_POINTS = 2.8, 20
 """Angle without a point, in radians, that tells a border, as for point clouds; in the ball of so many points."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class MetricSpaceCurvature:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class MetricSpaceCurvature(OneLine):
     """Curvature at every point of a metric space, in the order of its points.
 
     Attributes

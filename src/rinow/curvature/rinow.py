@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rinow._printing import OneLine
 from rinow.curvature.regions import region
 from rinow.kernels import comparison
 
@@ -27,8 +28,8 @@ CONTRAST = 0.1
 """Bounds that differ by more than this over the squared radius contradict a curvature at the point."""
 
 
-@dataclass(frozen=True, slots=True)
-class RinowCurvature:
+@dataclass(frozen=True, slots=True, repr=False)
+class RinowCurvature(OneLine):
     """What the triangles of a region allow its curvature to be.
 
     Attributes
@@ -55,8 +56,8 @@ class RinowCurvature:
     n_points: int
 
 
-@dataclass(frozen=True, slots=True)
-class RinowPointCurvature:
+@dataclass(frozen=True, slots=True, repr=False)
+class RinowPointCurvature(OneLine):
     """Rinow curvature at a point, from balls that shrink to it.
 
     Attributes

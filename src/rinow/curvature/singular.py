@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._printing import OneLine
 from rinow.curvature.cone_points import LEAST_DEFECT, cone_defects
 from rinow.curvature.creases import CreaseLines, EdgeTurnings, crease_lines_of
 from rinow.curvature.notes import mesh_notes, weld_notes
@@ -25,8 +26,8 @@ BRANCHES = 3
 """Creases that meet at a corner."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SingularFeatures:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SingularFeatures(OneLine):
     """Points and lines where a surface has no curvature, by vertices of its mesh, ascending.
 
     Attributes

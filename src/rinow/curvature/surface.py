@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rinow._arrays import as_floats
 from rinow._executor import Executor
+from rinow._printing import OneLine
 from rinow.curvature.angle_defect import angle_defect
 from rinow.curvature.auto import auto
 from rinow.curvature.cut import one_sided
@@ -45,8 +46,8 @@ SAFE_SCALE = 2.0**100
 """Lengths between this and its inverse are computed as they are; others after a change of the unit."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SurfaceCurvature:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SurfaceCurvature(OneLine):
     """Curvature at every vertex of a surface, in the order of its vertices; nan where undefined.
 
     Attributes

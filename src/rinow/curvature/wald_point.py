@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._printing import OneLine
 from rinow.curvature.regions import region
 from rinow.curvature.wald_limit import limit_at_first
 from rinow.embedding.quadruple import EmbeddingCurvatures, embedding_curvatures
@@ -30,8 +31,8 @@ WITHOUT_VALUE = 0.05
 """Share of quadruples without a value that noise explains: a graph has 0.2 and more."""
 
 
-@dataclass(frozen=True, slots=True)
-class WaldCurvature:
+@dataclass(frozen=True, slots=True, repr=False)
+class WaldCurvature(OneLine):
     """Wald curvature at a point.
 
     Attributes

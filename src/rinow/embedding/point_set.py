@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
 from rinow._arrays import as_distance_matrix, as_floats
+from rinow._printing import OneLine
 from rinow.errors import InvalidInputError, NotAMetricError
 from rinow.kernels import point_sets
 
@@ -30,8 +31,8 @@ BEYOND = 1.5
 """Steps may exceed by this factor the largest curvature that the perimeter of a triple allows."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CurvatureFit:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class CurvatureFit(OneLine):
     """Curvature that fits a batch of point sets.
 
     Attributes

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
 from rinow._arrays import as_floats, as_quadruples
+from rinow._printing import OneLine
 from rinow.errors import InvalidInputError
 from rinow.kernels import comparison_angles
 from rinow.kernels import embedding_curvatures as kernels
@@ -22,8 +23,8 @@ Flags = NDArray[np.bool_]
 KINDS = np.array(["", "nonplanar", "planar", "semidependent", "boundary"])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class EmbeddingCurvatures:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class EmbeddingCurvatures(OneLine):
     """All embedding curvatures of a batch of quadruples.
 
     Attributes

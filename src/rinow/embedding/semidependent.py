@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow._arrays import as_quadruples
+from rinow._printing import OneLine
 from rinow.errors import InvalidInputError
 from rinow.kernels import quadruples as kernels
 from rinow.kernels import robinson
@@ -80,8 +81,8 @@ def semidependent_order(quadruples: ArrayLike) -> Indices:
     return order.reshape(*shape, 4)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RobinsonCurvature:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class RobinsonCurvature(OneLine):
     """Approximate embedding curvature of a batch of semidependent quadruples, and intervals that hold the true one.
 
     Attributes

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from rinow._arrays import as_indices
+from rinow._printing import OneLine
 from rinow.errors import InvalidInputError
 from rinow.geodesics.length_space import as_step, step_graph
 from rinow.metric_space import as_metric_space
@@ -24,8 +25,8 @@ Indices = NDArray[np.intp]
 _ENTRIES = 1 << 22  # of the rows of shortest paths held at one time
 
 
-@dataclass(frozen=True, slots=True)
-class EpsilonGraph:
+@dataclass(frozen=True, slots=True, repr=False)
+class EpsilonGraph(OneLine):
     r"""Graph on a net of a space whose shortest paths approximate the distances.
 
     Attributes

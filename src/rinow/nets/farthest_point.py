@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
 from rinow._arrays import as_indices
+from rinow._printing import OneLine
 from rinow.errors import InvalidInputError
 from rinow.mesh import as_mesh, is_mesh_like
 from rinow.metric_space import as_metric_space
@@ -22,8 +23,8 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 
-@dataclass(frozen=True, slots=True)
-class FarthestPointNet:
+@dataclass(frozen=True, slots=True, repr=False)
+class FarthestPointNet(OneLine):
     """A net of a space or of the vertices of a mesh.
 
     Attributes
