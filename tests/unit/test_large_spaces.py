@@ -165,3 +165,31 @@ def test_eccentricity_bounds_of_a_net_hold_for_all_vertices(monkeypatch):
     assert (true <= high + 1e-12).all()
     assert eccentricity_gap(net, full) <= 1e-12
     assert net.covering_radius == full.distances[net.indices].min(axis=0).max()
+
+
+def arc_metric(n, length):
+    steps = np.abs(np.arange(n)[:, None] - np.arange(n))
+    return np.minimum(steps, n - steps) * length / n
+
+
+def test_nets_of_circles_of_two_lengths_tell_their_diameters_without_the_larger_radius():
+    # Ends of a diameter of the large circle, 4 apart, have partners in the small one, whose diameter is 1 + 2 r at most.
+    small, large, radii = arc_metric(20, 2.0), arc_metric(16, 8.0), (0.05, 0.25)
+    for spaces, r in (((small, large), radii), ((large, small), radii[::-1])):
+        found = gromov_hausdorff(*spaces, covering_radii=r, time_limit=0)
+        assert found.lower_bound_by == "eccentricities"
+        assert found.lower == pytest.approx((4.0 - (1.0 + 2 * 0.05)) / 2, rel=1e-9)
+        assert found.lower <= (4.0 - 1.0) / 2 <= found.upper  # scaling has the distortion 3; no map has less
+
+
+def test_eccentricities_of_nets_hold_for_every_denser_net():
+    rng = np.random.default_rng(11)
+    points = [rng.uniform(size=(40, 2)), rng.uniform(size=(40, 2)) * [3.0, 0.5]]
+    whole = [MetricSpace.from_points(p) for p in points]
+    exact = gromov_hausdorff(*whole, time_limit=0)
+    for k in (5, 10, 20):
+        parts = [space.subspace(range(k)) for space in whole]
+        radii = tuple(float(space.distances[:, :k].min(axis=1).max()) for space in whole)
+        found = eccentricity_gap(*(sample_of(part, Clock.of(0)) for part in parts), radii)
+        assert found <= eccentricity_gap(*(sample_of(space, Clock.of(0)) for space in whole)) + 1e-12
+        assert found / 2 <= exact.upper

@@ -66,7 +66,7 @@ def test_nets_stand_for_the_whole_space(seed):
 def test_one_known_space_costs_the_radius_of_the_other_only():
     """A segment of length 4 known by its ends, and a point: the ends have one image, and d = 2."""
     result = gromov_hausdorff([[0, 4], [4, 0]], [[0]], covering_radii=(2.0, 0.0))
-    assert (result.lower, result.lower_bound_by) == (2.0, "maps of subsets")
+    assert (result.lower, result.lower_bound_by) == (2.0, "eccentricities")
     assert result.upper == 4.0
 
 

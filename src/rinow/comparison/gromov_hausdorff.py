@@ -165,7 +165,7 @@ def _lower_bound_beyond(
 ) -> tuple[float, str]:
     """The best lower bound of the distance of spaces of which only the samples are known, and what proved it."""
     candidates = [(0.0, "non-negativity"), (lower, by)]
-    candidates.append((0.5 * eccentricity_gap(*samples) - sum(beyond), "eccentricities"))
+    candidates.append((0.5 * eccentricity_gap(*samples, beyond), "eccentricities"))
     best, by = max(candidates)
     X, Y = samples[0].distances, samples[1].distances
     radii = samples[0].covering_radius + beyond[0], samples[1].covering_radius + beyond[1]

@@ -82,16 +82,24 @@ def sample_of(thing: Any, clock: Clock) -> Sample:
     return _net(graph, vertices, clock)
 
 
-def eccentricity_gap(X: Sample, Y: Sample) -> float:
-    """Lower bound of the distortion: every chosen point has a partner whose eccentricity differs by no more than it."""
-    return max(_one_sided(X, Y), _one_sided(Y, X))
+def eccentricity_gap(X: Sample, Y: Sample, beyond: tuple[float, float] = (0.0, 0.0)) -> float:
+    """Lower bound of the distortion: every point has a partner whose eccentricity differs by no more than it.
+
+    `beyond` are the radii within which the samples' spaces come to all points of the spaces to be compared.
+    """
+    return max(_one_sided(X, Y, *beyond), _one_sided(Y, X, *reversed(beyond)))
 
 
-def _one_sided(X: Sample, Y: Sample) -> float:
+def _one_sided(X: Sample, Y: Sample, r: float, s: float) -> float:
+    """The same for the chosen points of X.
+
+    Beyond its points X reaches r farther; a point of Y has a point within s whose eccentricity is smaller by s at most,
+    and larger by 2s, for Y reaches s farther too.
+    """
     low, high = Y.eccentricity_bounds
-    gaps = [float(np.maximum(low - e, e - high).min()) for e in X.rows.max(axis=1)]
-    slack = 0.0 if Y.covering_radius == 0.0 else tolerances.COMPARISON * float(high.max())
-    return max(0.0, max(gaps) - slack)
+    gaps = [float(np.maximum(low - s - (e + r), e - (high + 2.0 * s)).min()) for e in X.rows.max(axis=1)]
+    known = Y.covering_radius == 0.0 and r == s == 0.0
+    return max(0.0, max(gaps) - (0.0 if known else tolerances.COMPARISON * float(high.max())))
 
 
 def _connected_edges(mesh: TriangleMesh | IntrinsicMesh) -> tuple[csr_array, Indices]:
