@@ -173,7 +173,7 @@ def arc_metric(n, length):
 
 
 def test_nets_of_circles_of_two_lengths_tell_their_diameters_without_the_larger_radius():
-    # Ends of a diameter of the large circle, 4 apart, have partners in the small one, whose diameter is 1 + 2 r at most.
+    # Ends of a diameter of the large circle, 4 apart, have partners in the small one, of diameter 1 + 2 r at most.
     small, large, radii = arc_metric(20, 2.0), arc_metric(16, 8.0), (0.05, 0.25)
     for spaces, r in (((small, large), radii), ((large, small), radii[::-1])):
         found = gromov_hausdorff(*spaces, covering_radii=r, time_limit=0)
