@@ -16,7 +16,7 @@ MESH, PICTURE = Path("rinow-demo.ply"), Path("rinow-demo.png")
 
 def demo() -> None:
     """Compute the curvature of the shipped mesh `spot` and write a PLY and a PNG into the current folder."""
-    with working("compiling and computing; the first run takes some seconds longer"):
+    with working("computing; the first run compiles before, for up to a minute"):
         surface = demo_mesh()
         study = study_surface(surface)
     with study.timed("writing"), working("drawing"):
