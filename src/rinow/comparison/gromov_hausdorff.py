@@ -41,8 +41,8 @@ class GromovHausdorff:
         Pairs (x, y) that cover both spaces; half their distortion is `upper`.  For a mesh of more than 3000 vertices
         they cover a net, and `upper` is half their distortion plus the covering radii.
     lower_bound_by : str
-        What proved `lower`: "non-negativity", "diameter", "eccentricities", "packing", "sorted distances", "arc
-        consistency", "search", "satisfiability" or "maps of subsets".
+        What proved `lower`: "non-negativity", "diameter", "eccentricities", "packing", "single linkage", "sorted
+        distances", "arc consistency", "search", "satisfiability", "persistence" or "maps of subsets".
     covering_radii : tuple of float
         How far a point of each space may be from the points that were compared.
     """
@@ -113,6 +113,9 @@ def gromov_hausdorff(
     thousands of points, a dozen points and those farthest from them and from their partners are mapped into all of the
     other space where the lower bound stays below half the upper one; this has the same name.
 
+    An interval that stays open is raised by holes that one space has and the other one lacks ("persistence") if the
+    extra of this name is installed (GUDHI) and a second is left.
+
     References
     ----------
     .. [1] D. Burago, Y. Burago, S. Ivanov, "A Course in Metric Geometry", 2001, Theorem 7.3.25.
@@ -178,6 +181,7 @@ def _compare(DX: Floats, DY: Floats, clock: Clock, rtol: float) -> Interval:
     if interval.closed or clock.over:
         return interval
     interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
+    interval.raise_lower(bounds.single_linkage_bound(DX, DY), "single linkage")
     align(DX, DY, interval, clock.part(0.1 * clock.left))
     if len(DX) * len(DY) * (len(DX) + len(DY)) < large.LARGE:
         engine = Engine(DX, DY, clock=clock.part(0.3 * clock.left))

@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import maximum_bipartite_matching
 
 from rinow._arrays import as_indices
 from rinow.comparison import steps
+from rinow.comparison.bounds import matching_bound
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, Engine, worst_of
 from rinow.comparison.interval import Interval
@@ -126,17 +125,6 @@ def _first_interval(DX: Floats, DY: Floats) -> Interval:
     values = [worst_of(BIJECTION, DX, DY, pairs) for pairs in maps]
     best = int(np.argmin(values))
     return Interval(maps[best], max(values[best], 1.0), lower=1.0)
-
-
-def matching_bound(levels: Floats) -> float:
-    """Least level at which a perfect matching exists among the pairs (x, y) with levels[x, y] at most that."""
-    values = np.unique(levels)
-    low, high = 0, len(values) - 1
-    while low < high:
-        middle = (low + high) // 2
-        matched = maximum_bipartite_matching(csr_array(levels <= values[middle]), perm_type="column")
-        low, high = (low, middle) if (matched >= 0).all() else (middle + 1, high)
-    return float(values[low])
 
 
 def dilatation(f: ArrayLike, X: Any, Y: Any) -> float:

@@ -14,6 +14,7 @@ from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, RELATION, Engine, Search
 from rinow.comparison.interval import Interval
 from rinow.comparison.level_search import LevelSearch
+from rinow.comparison.persistence import raise_by_persistence
 from rinow.comparison.relaxation import relaxed_maps
 from rinow.comparison.satisfiability import Satisfiability, solver_installed
 from rinow.comparison.symmetry import Isometries, isometries
@@ -68,6 +69,8 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
     if possible is not None and not interval.closed:
         satisfiability(engine, interval, clock.part(0.4 * clock.left), possible, symmetries)
     if possible is not None and not interval.closed:
+        if engine.kind == RELATION:
+            raise_by_persistence(engine.DX, engine.DY, interval, clock)
         bisect_by_consistency(engine, interval, clock.part(0.4 * clock.left))
         branch_and_bound(engine, interval, clock, possible, symmetries)
 
