@@ -88,8 +88,8 @@ def gromov_hausdorff(
         the unit of the distances: the interval is that of the larger spaces, surfaces or curves say, of which X and Y
         are nets.
     verify : bool, default False
-        Have the clause-learning solver write down its proofs, and check them: that takes about as long as finding them.
-        A refutation with a wrong proof is not used.
+        Have the clause-learning solver write down its proofs, and check them: that takes two or three times as long as
+        finding them.  A refutation with a wrong proof is not used.
 
     Returns
     -------

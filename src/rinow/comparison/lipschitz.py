@@ -66,8 +66,8 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
         Seconds after which the search stops with the bounds reached so far; with 0 the bounds that cost no search.
         One step may overrun it by some tenths of a second.
     verify : bool, default False
-        Have the clause-learning solver write down its proof, and check it: that takes about as long as finding it.  A
-        refutation with a wrong proof is not used.
+        Have the clause-learning solver write down its proof, and check it: that takes two or three times as long
+        as finding it.  A refutation with a wrong proof is not used.
 
     Returns
     -------
