@@ -1,6 +1,7 @@
 """Gromov-Hausdorff and Lipschitz distance: what is exact, what stays open, and how long it takes.
 
-    python benchmarks/bench_gromov_hausdorff.py [group ...] [--seeds N ...] [--only TEXT] [--seconds S] [--page] [--verify]
+    python benchmarks/bench_gromov_hausdorff.py [group ...] [--seeds N ...] [--only TEXT] [--seconds S] [--page]
+                                                [--verify]
 
 Prints instance, lower and upper bound, whether they are equal, what proved the lower one, and seconds.  Groups:
 plane, space, hops100, hops200, noisy, lipschitz, circle, continuous, intervals, meshes; by default all of them.  The
