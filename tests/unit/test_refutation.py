@@ -56,7 +56,8 @@ def forged(rng, proof, n_variables):
     """A proof with some lines changed, left out or put in."""
     lines = [line for line in proof if rng.random() < 0.8]
     for _ in range(3):
-        literals = rng.integers(1, n_variables + 1, rng.integers(0, 4)) * rng.choice([-1, 1])
+        literals = rng.permutation(n_variables)[: rng.integers(4)] + 1
+        literals *= rng.choice([-1, 1], len(literals))
         lines.insert(int(rng.integers(len(lines) + 1)), " ".join(map(str, [*literals, 0])))
     return lines
 

@@ -28,7 +28,8 @@ def is_refuted(
     """Whether a proof refutes a formula; None if the time is over before.
 
     Variable v = 1, 2, ... excludes each variable in exclusions[v - 1], and conversely; of each clause a literal is
-    true.  A line of the proof is a learned clause that ends with 0, or a clause to forget, which has a "d" in front.
+    true.  A line of the proof is a learned clause that ends with 0, or a clause to forget, which has a "d" in front.  A
+    literal occurs once in a clause; where it is repeated, a right proof may not be recognised.
     """
     n, given = len(exclusions), _literals("".join(" ".join(map(str, (*clause, 0))) + " " for clause in clauses))
     learned = _literals(" ".join(proof).replace("d", ""))
