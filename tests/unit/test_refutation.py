@@ -124,6 +124,9 @@ def test_refutations_of_levels(kind):
             assert solver.refutes(interval, FOREVER)
             assert interval.proof_checked is True
             assert interval.lower == worst
+            late = Interval(np.empty((0, 2), np.intp), worst, verify=True)
+            assert solver.refutes(late, Clock(0.0))
+            assert late.proof_checked is False
             solver.lower_level(worst, FOREVER)
             assert not solver.refutes(Interval(np.empty((0, 2), np.intp), 9.0, verify=True), FOREVER)
 

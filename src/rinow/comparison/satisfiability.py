@@ -130,8 +130,8 @@ class Satisfiability:
         """
         right = None
         if self._verify:
-            exclusions = [self._incompatible(s) for s in range(len(self.pairs))]
-            right = is_refuted(exclusions, self._given, self._solver.get_proof(), clock)
+            exclusions = [self._incompatible(s) for s in range(len(self.pairs)) if not clock.over]
+            right = None if clock.over else is_refuted(exclusions, self._given, self._solver.get_proof(), clock)
         if right is not False:
             interval.refuted(self._level, self.engine, "satisfiability", self.error, right is True)
         return right is not False
