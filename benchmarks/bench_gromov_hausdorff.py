@@ -1,6 +1,7 @@
 """Gromov-Hausdorff and Lipschitz distance: what is exact, what stays open, and how long it takes.
 
     python benchmarks/bench_gromov_hausdorff.py [group ...] [--seeds N ...] [--only TEXT] [--seconds S] [--page]
+                                                [--verify]
 
 Prints instance, lower and upper bound, whether they are equal, what proved the lower one, and seconds.  Groups:
 plane, space, hops100, hops200, noisy, lipschitz, circle, continuous, intervals, meshes; by default all of them.  The
@@ -183,16 +184,23 @@ GROUPS: dict[str, tuple[Callable[[int], Iterator[Instance]], float]] = {
 
 
 def show(
-    name: str, seed: int, seconds: float, X: Any, Y: Any, covering_radii: tuple[float, float] = (0.0, 0.0)
+    name: str,
+    seed: int,
+    seconds: float,
+    X: Any,
+    Y: Any,
+    covering_radii: tuple[float, float] = (0.0, 0.0),
+    *,
+    verify: bool = False,
 ) -> dict[str, Any]:
     """Compare two spaces and print one line; what it says."""
     start = time.perf_counter()
     if name.startswith("d_L"):
-        result: Any = rinow.lipschitz_distance(X, Y, time_limit=seconds)
+        result: Any = rinow.lipschitz_distance(X, Y, time_limit=seconds, verify=verify)
         f = result.bijection
         measured = math.log(max(rinow.dilatation(f, X, Y), rinow.dilatation(np.argsort(f), Y, X)))
     else:
-        result = rinow.gromov_hausdorff(X, Y, time_limit=seconds, covering_radii=covering_radii)
+        result = rinow.gromov_hausdorff(X, Y, time_limit=seconds, covering_radii=covering_radii, verify=verify)
         spaces = isinstance(X, rinow.MetricSpace)
         measured = result.upper
         if spaces:
@@ -203,7 +211,7 @@ def show(
     state = "exact" if result.exact else f"ratio {result.upper / max(result.lower, 1e-300):.4f}"
     print(
         f"{name:24s} {seed:2d} {result.lower:11.6f} {result.upper:11.6f} {state:14s} "
-        f"{result.lower_bound_by:18s} {spent:6.1f} s",
+        f"{result.lower_bound_by:18s} {spent:6.1f} s{'  proof checked' if result.proof_checked else ''}",
         flush=True,
     )
     bounds = {"lower": result.lower, "upper": result.upper, "exact": result.exact, "by": result.lower_bound_by}
@@ -218,6 +226,7 @@ def main() -> None:
     parser.add_argument("--only", default="", help="text in the names of the instances")
     parser.add_argument("--seconds", type=float, help="for each instance, instead of those of its group")
     parser.add_argument("--page", action="store_true")
+    parser.add_argument("--verify", action="store_true", help="check the proofs of the clause-learning solver")
     options = parser.parse_args()
     rng = np.random.default_rng(2)
     for small in (12, 90):  # warms the kernels, serial and parallel
@@ -228,7 +237,7 @@ def main() -> None:
         instances, limit = GROUPS[group]
         seconds = limit if options.seconds is None else options.seconds
         wanted = ((seed, *row) for seed in options.seeds for row in instances(seed) if options.only in row[0])
-        rows = [show(name, seed, seconds, *spaces) for seed, name, *spaces in wanted]
+        rows = [show(name, seed, seconds, *spaces, verify=options.verify) for seed, name, *spaces in wanted]
         if options.page:
             write_page(Path(__file__).parents[1], group, rows)
 

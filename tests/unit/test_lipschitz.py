@@ -10,7 +10,7 @@ from scipy.spatial.distance import pdist, squareform
 
 from naive import correspondences as naive
 from rinow import dilatation, lipschitz_distance
-from rinow.comparison.lipschitz import matching_bound
+from rinow.comparison.bounds import matching_bound
 from rinow.errors import InvalidInputError, NotAMetricError
 
 GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "gromov_hausdorff.json").read_text())

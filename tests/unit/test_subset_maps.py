@@ -96,7 +96,7 @@ def test_opposite_points_are_not_taken():
 
 def test_known_bound_is_kept_and_time_may_be_over():
     X, Y = polygon(8), metric_shapes.sphere_net(20)
-    assert bound_by_subsets(X, Y, (0.1, 0.1), 0.75, Clock(0.0)) == 0.75
+    assert bound_by_subsets(X, Y, (0.1, 0.1), 0.75, Clock(0.0)) == (0.75, None)
     result = gromov_hausdorff(X, Y, time_limit=0, covering_radii=(math.pi / 8, 0.7))
     assert 0.0 <= result.lower <= math.pi / 3 <= result.upper
 

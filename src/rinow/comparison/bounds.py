@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy.cluster.hierarchy import linkage
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import maximum_bipartite_matching
 from scipy.spatial.distance import squareform
 
-__all__ = ["diameter_bound", "eccentricity_bound", "packing_bound"]
+__all__ = ["diameter_bound", "eccentricity_bound", "matching_bound", "packing_bound", "single_linkage_bound"]
 
 Floats = NDArray[np.float64]
 
@@ -60,7 +62,34 @@ def _separations(D: Floats, k_max: int) -> Floats:
 
 def _cover_diameters(D: Floats) -> Floats:
     """Largest diameter of the clusters when complete linkage has left 1, 2, ..., n of them."""
+    return np.append(_merges(D, "complete"), 0.0)
+
+
+def single_linkage_bound(DX: Floats, DY: Floats) -> float:
+    """Largest difference of the merge heights of single linkage, from the highest on, filled up with zeros.
+
+    Points that steps of at most t join have partners that steps of at most t + dis R join.  So Y has at most as many
+    clusters at t + dis R as X has at t, and conversely (Carlsson, Mémoli 2010).  The heights are the deaths in
+    persistent homology of dimension 0, whose bottleneck distance is at most this bound and may be half of it.
+    """
+    a, b = _merges(DX, "single"), _merges(DY, "single")
+    k = max(len(a), len(b))
+    return float(np.abs(np.pad(a, (0, k - len(a))) - np.pad(b, (0, k - len(b)))).max(initial=0.0))
+
+
+def _merges(D: Floats, method: str) -> Floats:
+    """The heights at which clusters merge, descending."""
     if len(D) == 1:
-        return np.zeros(1)
-    heights = linkage(squareform(D, checks=False), "complete")[:, 2]
-    return np.append(heights[::-1], 0.0)
+        return np.zeros(0)
+    return np.sort(linkage(squareform(D, checks=False), method)[:, 2])[::-1]
+
+
+def matching_bound(levels: Floats) -> float:
+    """Least level at which a perfect matching exists among the pairs (x, y) with levels[x, y] at most that."""
+    values = np.unique(levels)
+    low, high = 0, len(values) - 1
+    while low < high:
+        middle = (low + high) // 2
+        matched = maximum_bipartite_matching(csr_array(levels <= values[middle]), perm_type="column")
+        low, high = (low, middle) if (matched >= 0).all() else (middle + 1, high)
+    return float(values[low])

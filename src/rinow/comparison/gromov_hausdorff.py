@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,10 +42,12 @@ class GromovHausdorff(OneLine):
         Pairs (x, y) that cover both spaces; half their distortion is `upper`.  For a mesh of more than 3000 vertices
         they cover a net, and `upper` is half their distortion plus the covering radii.
     lower_bound_by : str
-        What proved `lower`: "non-negativity", "diameter", "eccentricities", "packing", "sorted distances", "arc
-        consistency", "search", "satisfiability" or "maps of subsets".
+        What proved `lower`: "non-negativity", "diameter", "eccentricities", "packing", "single linkage", "sorted
+        distances", "arc consistency", "search", "satisfiability", "persistence" or "maps of subsets".
     covering_radii : tuple of float
         How far a point of each space may be from the points that were compared.
+    proof_checked : bool or None
+        Whether the proof that a clause-learning solver gave for `lower` was checked; None if `lower` needs none.
     """
 
     lower: float
@@ -54,10 +56,17 @@ class GromovHausdorff(OneLine):
     correspondence: Indices
     lower_bound_by: str
     covering_radii: tuple[float, float] = (0.0, 0.0)
+    proof_checked: bool | None = None
 
 
 def gromov_hausdorff(
-    X: Any, Y: Any, *, time_limit: float = 60.0, rtol: float = 0.0, covering_radii: tuple[float, float] = (0.0, 0.0)
+    X: Any,
+    Y: Any,
+    *,
+    time_limit: float = 60.0,
+    rtol: float = 0.0,
+    covering_radii: tuple[float, float] = (0.0, 0.0),
+    verify: bool = False,
 ) -> GromovHausdorff:
     r"""Gromov-Hausdorff distance: how far two metric spaces are from being isometric.
 
@@ -79,12 +88,15 @@ def gromov_hausdorff(
         Each argument stands for a larger space, of which every point is within this distance of one of its points, in
         the unit of the distances: the interval is that of the larger spaces, surfaces or curves say, of which X and Y
         are nets.
+    verify : bool, default False
+        Have the clause-learning solver write down its proofs, and check them: that takes two or three times as long as
+        finding them.  A refutation with a wrong proof is not used.
 
     Returns
     -------
     result : GromovHausdorff
         `lower` and `upper` in the unit of the distances, `exact` if they are equal, `correspondence` whose distortion
-        is ``2 * upper``, and `lower_bound_by`, the name of what proved `lower`.
+        is ``2 * upper``, `lower_bound_by`, the name of what proved `lower`, and `proof_checked`.
 
     Raises
     ------
@@ -113,6 +125,9 @@ def gromov_hausdorff(
     over the maps f of A into the net, without r, and the same the other way round ("maps of subsets").  Of spaces of
     thousands of points, a dozen points and those farthest from them and from their partners are mapped into all of the
     other space where the lower bound stays below half the upper one; this has the same name.
+
+    An interval that stays open is raised by holes that one space has and the other one lacks ("persistence") if the
+    extra of this name is installed (GUDHI) and a second is left.
 
     References
     ----------
@@ -143,13 +158,14 @@ def gromov_hausdorff(
     samples = sample_of(X, clock.part(0.25 * clock.left)), sample_of(Y, clock.part(0.25 * clock.left))
     radii = samples[0].covering_radius + beyond[0], samples[1].covering_radius + beyond[1]
     share = 1.0 if sum(radii) == 0.0 else SHARE_OF_NETS if sum(beyond) > 0.0 else SHARE_OF_MESHES
-    interval = _compare(samples[0].distances, samples[1].distances, clock.part(share * clock.left), rtol)
-    lower, upper, exact, by = 0.5 * interval.lower, 0.5 * interval.upper, interval.exact, interval.by
+    interval = first_interval(samples[0].distances, samples[1].distances, rtol, verify=verify)
+    _compare(samples[0].distances, samples[1].distances, interval, clock.part(share * clock.left))
+    upper, exact = 0.5 * interval.upper + sum(radii), interval.exact and sum(radii) == 0.0
+    proved = Proved(0.5 * interval.lower, interval.by, interval.proof_checked)
     if sum(radii) > 0.0:
-        upper, exact = upper + sum(radii), False
-        lower, by = _lower_bound_beyond(samples, lower - sum(radii), by, beyond, clock)
+        proved = _proved_beyond(samples, proved, beyond, clock, verify=verify)
     pairs = np.stack([samples[0].indices[interval.pairs[:, 0]], samples[1].indices[interval.pairs[:, 1]]], axis=1)
-    return GromovHausdorff(lower, upper, exact, pairs, by, radii)
+    return GromovHausdorff(proved.lower, upper, exact, pairs, proved.by, radii, proved.proof_checked)
 
 
 def _checked_radii(covering_radii: tuple[float, float]) -> tuple[float, float]:
@@ -160,25 +176,36 @@ def _checked_radii(covering_radii: tuple[float, float]) -> tuple[float, float]:
     return float(radii[0]), float(radii[1])
 
 
-def _lower_bound_beyond(
-    samples: tuple[Sample, Sample], lower: float, by: str, beyond: tuple[float, float], clock: Clock
-) -> tuple[float, str]:
-    """The best lower bound of the distance of spaces of which only the samples are known, and what proved it."""
-    candidates = [(0.0, "non-negativity"), (lower, by)]
-    candidates.append((0.5 * eccentricity_gap(*samples, beyond), "eccentricities"))
-    best, by = max(candidates)
+class Proved(NamedTuple):
+    """A lower bound and what proved it."""
+
+    lower: float
+    by: str
+    proof_checked: bool | None = None
+
+
+def _proved_beyond(
+    samples: tuple[Sample, Sample], samples_proved: Proved, beyond: tuple[float, float], clock: Clock, *, verify: bool
+) -> Proved:
+    """The best lower bound of the distance of spaces of which only the samples are known."""
     X, Y = samples[0].distances, samples[1].distances
     radii = samples[0].covering_radius + beyond[0], samples[1].covering_radius + beyond[1]
-    by_maps = 0.5 * bound_by_subsets(X, Y, radii, 2.0 * best, clock)
-    return (by_maps, "maps of subsets") if by_maps > best else (best, by)
+    best = max(
+        Proved(0.0, "non-negativity"),
+        samples_proved._replace(lower=samples_proved.lower - sum(radii)),
+        Proved(0.5 * eccentricity_gap(*samples, beyond), "eccentricities"),
+        key=lambda proved: proved.lower,
+    )
+    twice, proof_checked = bound_by_subsets(X, Y, radii, 2.0 * best.lower, clock, verify=verify)
+    return Proved(0.5 * twice, "maps of subsets", proof_checked) if 0.5 * twice > best.lower else best
 
 
-def _compare(DX: Floats, DY: Floats, clock: Clock, rtol: float) -> Interval:
-    """The interval of the distortion of two spaces of which all distances are known."""
-    interval = first_interval(DX, DY, rtol)
+def _compare(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
+    """Improve the interval of the distortion of two spaces of which all distances are known."""
     if interval.closed or clock.over:
-        return interval
+        return
     interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
+    interval.raise_lower(bounds.single_linkage_bound(DX, DY), "single linkage")
     align(DX, DY, interval, clock.part(0.1 * clock.left))
     if len(DX) * len(DY) * (len(DX) + len(DY)) < large.LARGE:
         engine = Engine(DX, DY, clock=clock.part(0.3 * clock.left))
@@ -186,10 +213,9 @@ def _compare(DX: Floats, DY: Floats, clock: Clock, rtol: float) -> Interval:
         steps.close(engine, interval, clock)
     else:
         large.approach(DX, DY, interval, clock)
-    return interval
 
 
-def first_interval(DX: Floats, DY: Floats, rtol: float) -> Interval:
+def first_interval(DX: Floats, DY: Floats, rtol: float, *, verify: bool = False) -> Interval:
     """What can be said at once: two bounds from below, and the better of a few maps."""
     by_eccentricity = np.argsort(DX.max(axis=1), kind="stable"), np.argsort(DY.max(axis=1), kind="stable")
     candidates = [_monotone(*by_eccentricity)]
@@ -197,7 +223,7 @@ def first_interval(DX: Floats, DY: Floats, rtol: float) -> Interval:
         candidates.append(np.repeat(np.arange(len(DX))[:, None], 2, axis=1))
     values = [worst_of(RELATION, DX, DY, pairs) for pairs in candidates]
     best = int(np.argmin(values))
-    interval = Interval(candidates[best], values[best], rtol=rtol)
+    interval = Interval(candidates[best], values[best], rtol=rtol, verify=verify)
     interval.raise_lower(bounds.diameter_bound(DX, DY), "diameter")
     interval.raise_lower(bounds.eccentricity_bound(DX, DY), "eccentricities")
     return interval

@@ -18,10 +18,13 @@ Indices = NDArray[np.intp]
 class Interval:
     """Bounds of the least level of a relation, the relation that has the upper one, and what proved the lower one."""
 
-    def __init__(self, pairs: Indices, upper: float, *, lower: float = 0.0, rtol: float = 0.0) -> None:
+    def __init__(
+        self, pairs: Indices, upper: float, *, lower: float = 0.0, rtol: float = 0.0, verify: bool = False
+    ) -> None:
         self.pairs, self.upper = pairs, upper
         self.lower, self.by = lower, "non-negativity"
-        self.rtol = rtol
+        self.proof_checked: bool | None = None  # None if the lower bound needs no solver
+        self.rtol, self.verify = rtol, verify
 
     @property
     def closed(self) -> bool:
@@ -38,17 +41,19 @@ class Interval:
         """Level whose refutation closes the interval."""
         return min(float(np.nextafter(self.upper, -math.inf)), self.upper * (1.0 - self.rtol))
 
-    def raise_lower(self, value: float, by: str) -> None:
+    def raise_lower(self, value: float, by: str, proof_checked: bool | None = None) -> None:
         """Take a better lower bound; values above the upper bound are its rounding."""
         if value > self.lower:
-            self.lower, self.by = min(value, self.upper), by
+            self.lower, self.by, self.proof_checked = min(value, self.upper), by, proof_checked
 
-    def refuted(self, level: float, engine: Engine, by: str, error: float = 0.0) -> None:
+    def refuted(
+        self, level: float, engine: Engine, by: str, error: float = 0.0, proof_checked: bool | None = None
+    ) -> None:
         """Take note that no relation fits a level: the bound is the next level that two distances can have.
 
         It is lower by the error of a proof that used isometries up to rounding.
         """
-        self.raise_lower(min(next_difference(engine, level), self.upper) - error, by)
+        self.raise_lower(min(next_difference(engine, level), self.upper) - error, by, proof_checked)
 
     def offer(self, pairs: Indices, value: float) -> bool:
         """Take a relation if it is better than the best one."""

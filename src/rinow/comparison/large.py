@@ -13,6 +13,7 @@ from rinow.comparison.engine import RELATION
 from rinow.comparison.interval import Interval
 from rinow.comparison.large_subsets import raise_by_few_points
 from rinow.comparison.large_work import NET, Work, farthest_points
+from rinow.comparison.persistence import raise_by_persistence
 from rinow.comparison.warm_start import RelationTabu
 from rinow.kernels import compatibility
 from rinow.kernels.dives import LEFT_OVER
@@ -78,6 +79,7 @@ def approach(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
         if k == TIGHT_LEVELS:
             _bound_by_rows(DX, DY, ROWS, interval, clock.part(0.1 * clock.left))
         if k == FAILED and interval.upper > LOOSENESS * interval.lower:
+            raise_by_persistence(DX, DY, interval, clock)
             raise_by_few_points(DX, DY, interval, clock.part(FEW_POINTS * clock.left))
         if k == TIGHT_LEVELS and interval.upper > LOOSENESS * interval.lower:
             relation = _from_nets(work, interval, clock)

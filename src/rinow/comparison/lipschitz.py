@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import maximum_bipartite_matching
 
 from rinow._arrays import as_indices
 from rinow._printing import OneLine
 from rinow.comparison import steps
+from rinow.comparison.bounds import matching_bound
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, Engine, worst_of
 from rinow.comparison.interval import Interval
@@ -43,6 +42,8 @@ class LipschitzDistance(OneLine):
     lower_bound_by : str
         What proved `lower`: "non-negativity", "size", "sorted distances", "matching", "arc consistency", "search" or
         "satisfiability".
+    proof_checked : bool or None
+        Whether the proof that a clause-learning solver gave for `lower` was checked; None if `lower` needs none.
     """
 
     lower: float
@@ -50,9 +51,10 @@ class LipschitzDistance(OneLine):
     exact: bool
     bijection: Indices
     lower_bound_by: str
+    proof_checked: bool | None = None
 
 
-def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0) -> LipschitzDistance:
+def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool = False) -> LipschitzDistance:
     r"""Lipschitz distance: how much the distances must be stretched to turn one space into the other.
 
     The least value of :math:`\log\max(\mathrm{dil} f, \mathrm{dil} f^{-1})` over the bijections f: X → Y.
@@ -64,13 +66,16 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0) -> Lipschitz
     time_limit : float, default 60
         Seconds after which the search stops with the bounds reached so far; with 0 the bounds that cost no search.
         One step may overrun it by some tenths of a second.
+    verify : bool, default False
+        Have the clause-learning solver write down its proof, and check it: that takes two or three times as long
+        as finding it.  A refutation with a wrong proof is not used.
 
     Returns
     -------
     result : LipschitzDistance
-        `lower` and `upper`, `exact` if they are equal, `bijection` that has `upper`, `lower_bound_by`.  Both bounds are
-        inf for spaces of unequal size, and `upper` is inf as long as only one of the spaces has coincident points
-        (distance 0) where the bijection meets them.
+        `lower` and `upper`, `exact` if they are equal, `bijection` that has `upper`, `lower_bound_by`, `proof_checked`.
+        Both bounds are inf for spaces of unequal size, and `upper` is inf as long as only one of the spaces has
+        coincident points (distance 0) where the bijection meets them.
 
     Raises
     ------
@@ -109,7 +114,7 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0) -> Lipschitz
     DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
     if len(DX) != len(DY):
         return LipschitzDistance(math.inf, math.inf, True, np.empty(0, np.intp), "size")
-    interval = _first_interval(DX, DY)
+    interval = _first_interval(DX, DY, verify=verify)
     if not interval.closed and not clock.over:
         engine = Engine(DX, DY, BIJECTION, clock=clock)
         interval.raise_lower(engine.row_bound, "sorted distances")
@@ -117,27 +122,17 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0) -> Lipschitz
         steps.close(engine, interval, clock)
     f = np.empty(len(DX), np.intp)
     f[interval.pairs[:, 0]] = interval.pairs[:, 1]
-    return LipschitzDistance(math.log(interval.lower), math.log(interval.upper), interval.exact, f, interval.by)
+    lower, upper = math.log(interval.lower), math.log(interval.upper)
+    return LipschitzDistance(lower, upper, interval.exact, f, interval.by, interval.proof_checked)
 
 
-def _first_interval(DX: Floats, DY: Floats) -> Interval:
+def _first_interval(DX: Floats, DY: Floats, *, verify: bool) -> Interval:
     """The better one of the identity and the map that keeps the order of the mean distances."""
     by_mean = np.argsort(DX.mean(axis=1), kind="stable"), np.argsort(DY.mean(axis=1), kind="stable")
     maps = [np.stack(by_mean, axis=1), np.repeat(np.arange(len(DX))[:, None], 2, axis=1)]
     values = [worst_of(BIJECTION, DX, DY, pairs) for pairs in maps]
     best = int(np.argmin(values))
-    return Interval(maps[best], max(values[best], 1.0), lower=1.0)
-
-
-def matching_bound(levels: Floats) -> float:
-    """Least level at which a perfect matching exists among the pairs (x, y) with levels[x, y] at most that."""
-    values = np.unique(levels)
-    low, high = 0, len(values) - 1
-    while low < high:
-        middle = (low + high) // 2
-        matched = maximum_bipartite_matching(csr_array(levels <= values[middle]), perm_type="column")
-        low, high = (low, middle) if (matched >= 0).all() else (middle + 1, high)
-    return float(values[low])
+    return Interval(maps[best], max(values[best], 1.0), lower=1.0, verify=verify)
 
 
 def dilatation(f: ArrayLike, X: Any, Y: Any) -> float:

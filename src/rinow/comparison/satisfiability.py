@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, MAP, Engine
+from rinow.comparison.interval import Interval
+from rinow.comparison.refutation import is_refuted
 from rinow.comparison.symmetry import Isometries
 
 __all__ = ["Satisfiability", "solver_installed"]
@@ -43,7 +45,8 @@ def solver_installed() -> bool:
 class Satisfiability:
     """A solver for one engine at falling levels; what it learned at one level it keeps at the next.
 
-    `ready` is false if the problem is too large or the time was over before it was set up.
+    `ready` is false if the problem is too large or the time was over before it was set up.  With `verify` it writes
+    down its proof.
     """
 
     def __init__(
@@ -54,11 +57,14 @@ class Satisfiability:
         clock: Clock,
         isometries: tuple[Isometries, Isometries] | None = None,
         near: tuple[Flags, Flags] | None = None,
+        *,
+        verify: bool = False,
     ) -> None:
         from pysat.solvers import Solver  # the import takes long
 
         self.engine, self.pairs = engine, np.argwhere(possible)
-        self._solver: Any = Solver(name="glucose4")
+        self._solver: Any = Solver(name="glucose4", with_proof=verify)
+        self._verify, self._given = verify, list[list[int]]()
         self._conflicts = FIRST_CONFLICTS
         self._level, self._clauses = math.inf, 0
         self.error = 0.0
@@ -98,7 +104,7 @@ class Satisfiability:
             if self._clauses > LARGEST_CLAUSES or (s % 8 == 0 and clock.over):
                 self.ready = False
                 return
-            self._add([-(s + 1), -int(o)] for o in others)
+            self._solver.append_formula([-(s + 1), -int(o)] for o in others)
         self._level = level
 
     def run(self, clock: Clock) -> tuple[bool, Indices | None]:
@@ -116,6 +122,30 @@ class Satisfiability:
             self._conflicts = max(20, int(self._conflicts * min(2.0, 0.3 / max(spent, 1e-3))))
         return False, None
 
+    def refutes(self, interval: Interval, clock: Clock) -> bool:
+        """Raise a lower bound by the refutation, unless its proof is found to be wrong; whether that was done.
+
+        For the check incompatible pairs are found again from the distances; the clauses for points and symmetry are
+        what the solver was given.
+        """
+        right = None
+        if self._verify:
+            exclusions = [self._incompatible(s) for s in range(len(self.pairs)) if not clock.over]
+            right = None if clock.over else is_refuted(exclusions, self._given, self._solver.get_proof(), clock)
+        if right is not False:
+            interval.refuted(self._level, self.engine, "satisfiability", self.error, right is True)
+        return right is not False
+
+    def _incompatible(self, s: int) -> Indices:
+        """The variables of the pairs that cannot stand beside a pair."""
+        DX, DY, kind = self.engine.DX, self.engine.DY, self.engine.kind
+        x, y = self.pairs.T
+        wrong = _discrepancies(kind, DX[x[s], x], DY[y[s], y]) > self._level
+        if kind in (BIJECTION, MAP):
+            wrong |= (x == x[s]) | ((y == y[s]) if kind == BIJECTION else False)
+        wrong[s] = False
+        return np.flatnonzero(wrong) + 1
+
     def _cover(self, variables: Indices, near: tuple[Flags, Flags] | None) -> None:
         """A pair for every point that must be covered, or for some point near it."""
         if near is None:
@@ -127,7 +157,9 @@ class Satisfiability:
             self._add(table[ball][table[ball] > 0].tolist() for ball in close)
 
     def _add(self, clauses: Iterable[list[int]]) -> None:
-        self._solver.append_formula(clauses)
+        added = list(clauses)
+        self._given += added
+        self._solver.append_formula(added)
 
     def _break_symmetry(self, variables: Indices, isometries: tuple[Isometries, Isometries] | None) -> None:
         """Where a space is homogeneous, place two points of the other one in it.

@@ -14,6 +14,7 @@ from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, RELATION, Engine, Search
 from rinow.comparison.interval import Interval
 from rinow.comparison.level_search import LevelSearch
+from rinow.comparison.persistence import raise_by_persistence
 from rinow.comparison.relaxation import relaxed_maps
 from rinow.comparison.satisfiability import Satisfiability, solver_installed
 from rinow.comparison.symmetry import Isometries, isometries
@@ -39,6 +40,9 @@ WARM, LONGEST_WARM, WARM_SPEED = 0.15, 0.6, 130_000
 
 CLIMB = 0.7
 """Share of the time for levels from below, where they are few."""
+
+LEARNING = 0.4
+"""Share of the time for a clause-learning solver."""
 
 SYMMETRY = 0.1
 """Share of the time for finding isometries of both spaces."""
@@ -66,8 +70,10 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
             return
     possible = branch_and_bound(engine, interval, clock.part(share * clock.left), None, symmetries)
     if possible is not None and not interval.closed:
-        satisfiability(engine, interval, clock.part(0.4 * clock.left), possible, symmetries)
+        satisfiability(engine, interval, clock, possible, symmetries)
     if possible is not None and not interval.closed:
+        if engine.kind == RELATION:
+            raise_by_persistence(engine.DX, engine.DY, interval, clock)
         bisect_by_consistency(engine, interval, clock.part(0.4 * clock.left))
         branch_and_bound(engine, interval, clock, possible, symmetries)
 
@@ -188,25 +194,24 @@ def branch_and_bound(
 
 
 def satisfiability(engine: Engine, interval: Interval, clock: Clock, possible: Flags, symmetries: Symmetries) -> None:
-    """Let a clause-learning solver search below the upper bound until it is proved or the time is over."""
-    level = interval.wanted
-    left = engine.consistent(level, clock, possible)
+    """Let a clause-learning solver search below the upper bound until it is proved or its share of the time is over."""
+    level, solving = interval.wanted, clock.part(LEARNING * clock.left)
+    left = engine.consistent(level, solving, possible)
     if left is None:
         interval.refuted(level, engine, "arc consistency")
         return
     if not solver_installed():
         return
-    with Satisfiability(engine, left, level, clock, symmetries) as solver:
+    with Satisfiability(engine, left, level, solving, symmetries, verify=interval.verify) as solver:
         while solver.ready and not interval.closed:
-            refuted, pairs = solver.run(clock)
+            refuted, pairs = solver.run(solving)
             if refuted:
-                interval.refuted(level, engine, "satisfiability", solver.error)
+                solver.refutes(interval, clock)
             if refuted or pairs is None:
                 return
             interval.offer(pairs, engine.worst_of(pairs))
-            polish(engine, interval, clock)
-            level = interval.wanted
-            solver.lower_level(level, clock)
+            polish(engine, interval, solving)
+            solver.lower_level(interval.wanted, solving)
 
 
 def bisect_by_consistency(engine: Engine, interval: Interval, clock: Clock, possible: Flags | None = None) -> None:

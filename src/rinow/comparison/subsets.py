@@ -54,13 +54,13 @@ ROUND, PROBE = 0.7, 0.5
 class SubsetBound:
     """Maps from a subset A of one space to a net B of the other: an interval for their least distortion."""
 
-    def __init__(self, DA: Floats, DB: Floats, at_least: float) -> None:
+    def __init__(self, DA: Floats, DB: Floats, at_least: float, *, verify: bool = False) -> None:
         self.engine = Engine(DA, DB, MAP, both=False)
         f = self.engine.row_levels.argmin(axis=1)
         maps = [np.stack([np.arange(len(DA)), image], axis=1) for image in (f, np.zeros(len(DA), np.intp))]
         pairs = min(maps, key=self.engine.worst_of)
         value = self.engine.worst_of(pairs)
-        self.interval = Interval(pairs, value, lower=min(at_least, value))
+        self.interval = Interval(pairs, value, lower=min(at_least, value), verify=verify)
         self._symmetries: tuple[Isometries, Isometries] | None = None
 
     def improve(self, clock: Clock) -> None:
@@ -75,33 +75,36 @@ class SubsetBound:
             rise = step * (interval.upper - interval.lower)
             if interval.upper - interval.lower <= NARROW * interval.upper or rise <= LEAST_RISE * interval.upper:
                 return
-            if not self._probe(interval.lower + rise, clock.part(PROBE * clock.left)):
+            if not self._probe(interval.lower + rise, clock):
                 step *= 0.5
 
     def _probe(self, level: float, clock: Clock) -> bool:
         """Decide one level; whether that succeeded."""
-        interval, engine = self.interval, self.engine
-        left = engine.consistent(level, clock)
+        interval, engine, probing = self.interval, self.engine, clock.part(PROBE * clock.left)
+        left = engine.consistent(level, probing)
         if left is None:
             interval.refuted(level, engine, "arc consistency")
             return True
         if self._symmetries is None:
             trivial = Isometries(np.arange(len(engine.DX))[None], 0.0)
-            self._symmetries = trivial, isometries(engine.DY, clock)
-        with Satisfiability(engine, left, level, clock, self._symmetries) as solver:
-            refuted, pairs = solver.run(clock)
-            if refuted:
-                interval.refuted(level, engine, "satisfiability", solver.error)
+            self._symmetries = trivial, isometries(engine.DY, probing)
+        with Satisfiability(engine, left, level, probing, self._symmetries, verify=interval.verify) as solver:
+            refuted, pairs = solver.run(probing)
+            accepted = refuted and solver.refutes(interval, clock)
         if pairs is not None:
             interval.offer(pairs, worst_of(MAP, engine.DX, engine.DY, pairs))
-        return refuted or pairs is not None
+        return accepted or pairs is not None
 
 
-def bound_by_subsets(DX: Floats, DY: Floats, radii: tuple[float, float], lower: float, clock: Clock) -> float:
+def bound_by_subsets(
+    DX: Floats, DY: Floats, radii: tuple[float, float], lower: float, clock: Clock, *, verify: bool = False
+) -> tuple[float, bool | None]:
     """Lower bound of twice the distance of two spaces that lie within the given radii of the points of DX and DY.
 
-    Larger and larger subsets are mapped, both ways, until the time is over; `lower` is a bound that is known.
+    Larger and larger subsets are mapped, both ways, until the time is over; `lower` is a bound that is known.  The
+    second value is that of `Interval.proof_checked`.
     """
+    proof_checked = None
     opposites = abs(sum_to_opposite(DX) - sum_to_opposite(DY)) <= OPPOSITE * max(DX.max(), DY.max())
     sequences = [spread_points(D, SIZES[-1][0], opposites=opposites) for D in (DX, DY)]
     nets = [farthest_points(D, SIZES[-1][1]) for D in (DX, DY)]
@@ -113,11 +116,12 @@ def bound_by_subsets(DX: Floats, DY: Floats, radii: tuple[float, float], lower: 
             DA = D[np.ix_(A, A)]
             if clock.over or (way, len(A), len(B)) in finished or DA.max() - loss <= lower:
                 continue
-            bound = SubsetBound(DA, E[np.ix_(B, B)], lower + loss)
+            bound = SubsetBound(DA, E[np.ix_(B, B)], lower + loss, verify=verify)
             bound.improve(clock.part(ROUND * clock.left))
-            lower = max(lower, bound.interval.lower - loss)
+            if bound.interval.lower - loss > lower:
+                lower, proof_checked = bound.interval.lower - loss, bound.interval.proof_checked
             finished.add((way, len(A), len(B)))
-    return lower
+    return lower, proof_checked
 
 
 def spread_points(D: Floats, k: int, *, opposites: bool) -> Indices:
