@@ -106,6 +106,18 @@ def test_distance_matrices(folder, capfd):
     assert "0 <= distance <= 0;" in out
 
 
+def test_verify_has_the_proof_of_a_solver_checked(folder, capfd, compiled_searches):
+    around = np.abs(np.subtract.outer(np.arange(24), np.arange(24)))
+    np.save("circle.npy", np.minimum(around, 24 - around))
+    np.save("segment.npy", np.abs(np.subtract.outer(np.arange(25), np.arange(25))) / 2)
+    code, out, _ = run(capfd, "compare", "circle.npy", "segment.npy", "--distances", "--verify", "--json", "--time-limit", "900")
+    record = json.loads(out)
+    assert code == 0 and record["lower"] <= 3.75 <= record["upper"]  # 15 steps of pi / 24 in units of pi / 12, halved
+    assert (record["lower_bound_by"], record["proof_checked"]) == ("satisfiability", True)
+    assert main(["compare", "d.npz", "e.npy", "--distances", "--json"]) == 0
+    assert json.loads(capfd.readouterr().out)["proof_checked"] is None
+
+
 def test_surfaces_by_their_inner_distances(folder, capfd):
     code, out, _ = run(capfd, "compare", "a.ply", "b.obj", "--metric", "lipschitz", "--json", "--time-limit", "20")
     record = json.loads(out)

@@ -62,11 +62,12 @@ def console() -> Console:
 
 def print_counts(title: str, counts: Mapping[str, Any]) -> None:
     """A table of two columns."""
-    table = Table("", "value", title=title)
+    out = console()
+    table = Table("", "value", title=title, min_width=min(len(title), out.width))
     for name, value in counts.items():
         table.add_row(name.replace("_", " "), f"{value:,}" if isinstance(value, int) else f"{value:.6g}")
     table.columns[1].justify = "right"
-    console().print(table)
+    out.print(table)
 
 
 def print_study(title: str, study: SurfaceStudy) -> None:

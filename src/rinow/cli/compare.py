@@ -30,6 +30,7 @@ def compare(
     output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"])] = (),
     tolerance: float = 1e-4,
     time_limit: float = 60.0,
+    verify: bool = False,
     unit: str = "length",
     json: bool = False,
 ) -> None:
@@ -52,6 +53,8 @@ def compare(
         Hausdorff distance of surfaces: greatest width of the interval, relative to the diagonal.
     time_limit
         Other distances: seconds after which to stop with the interval reached.
+    verify
+        Other distances: check the proof if the lower bound comes from a clause-learning solver.
     unit
         Name of the unit of length of the files, such as mm.
     json
@@ -73,6 +76,7 @@ def compare(
             kind=kind,
             tolerance=tolerance,
             time_limit=time_limit,
+            verify=verify,
             unit=unit,
         )
     notes = [note for shape in shapes if isinstance(shape, TriangleMesh) for note in shape.notes]
@@ -141,7 +145,8 @@ def _print(record: dict[str, Any], notes: list[str]) -> None:
             rows[f"95 % of the distances from {side} are below"] = levels["95"]
         proof = f"attained between {_place(record['witness_a'])} in a and {_place(record['witness_b'])} in b"
     else:
-        proof = f"proved by {record['lower_bound_by']}; {len(record['pairs'])} pairs attain the upper one"
+        checked = {None: "", True: ", its proof checked", False: ", its proof not checked"}[record["proof_checked"]]
+        proof = f"proved by {record['lower_bound_by']}{checked}; {len(record['pairs'])} pairs attain the upper one"
     unit = "" if record["unit"] == "1" else " " + record["unit"]
     print_counts(f"{record['metric']} distance of {record['a']} and {record['b']}, unit {record['unit']}", rows)
     interval = f"{record['lower']:.9g} <= distance <= {record['upper']:.9g}{unit}"

@@ -70,7 +70,8 @@ class ComparisonStudy:
                 "percentiles_a": _percentiles(r.distances_a),
                 "percentiles_b": _percentiles(r.distances_b),
             }
-        return {"exact": r.exact, "lower_bound_by": r.lower_bound_by, "pairs": self.pairs().tolist()}
+        proof = {"lower_bound_by": r.lower_bound_by, "proof_checked": r.proof_checked}
+        return {"exact": r.exact, **proof, "pairs": self.pairs().tolist()}
 
     def pairs(self) -> NDArray[np.intp]:
         """(k, 2): points of A and B that belong together, with which the upper bound is attained."""
@@ -95,6 +96,7 @@ def compare_shapes(
     kind: Kind,
     tolerance: float = 1e-4,
     time_limit: float = 60.0,
+    verify: bool = False,
     unit: str = "length",
 ) -> ComparisonStudy:
     """Compare two meshes, point sets or distance matrices.
@@ -111,6 +113,8 @@ def compare_shapes(
         Greatest width of the interval of the Hausdorff distance of surfaces, relative to their diagonal.
     time_limit : float, default 60
         Seconds after which the other two distances stop with the interval reached.
+    verify : bool, default False
+        Have proofs of a clause-learning solver checked, for these two distances.
     unit : str, optional
         Name of the unit of length.
 
@@ -134,9 +138,10 @@ def compare_shapes(
         result: Result = hausdorff_distance(a, b, tolerance=tolerance)
     elif metric == "gromov-hausdorff":
         X, Y = (shape if kind == "surfaces" else _space(shape, kind) for shape in (a, b))
-        result = gromov_hausdorff(X, Y, time_limit=time_limit)
+        result = gromov_hausdorff(X, Y, time_limit=time_limit, verify=verify)
     else:
-        result, unit = lipschitz_distance(_space(a, kind), _space(b, kind), time_limit=time_limit), "1"
+        X, Y = _space(a, kind), _space(b, kind)
+        result, unit = lipschitz_distance(X, Y, time_limit=time_limit, verify=verify), "1"
     return ComparisonStudy(metric, kind, result, time.perf_counter() - begin, unit)
 
 
