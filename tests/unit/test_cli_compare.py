@@ -112,7 +112,7 @@ def test_verify_has_the_proof_of_a_solver_checked(folder, capfd, compiled_search
     np.save("segment.npy", np.abs(np.subtract.outer(np.arange(25), np.arange(25))) / 2)
     code, out, _ = run(capfd, "compare", "circle.npy", "segment.npy", "--distances", "--verify", "--json", "--time-limit", "900")
     record = json.loads(out)
-    assert code == 0 and record["lower"] <= 3.75 <= record["upper"]  # 15 steps of pi / 24 in units of pi / 12, halved
+    assert code == 0 and record["lower"] <= 3.75 <= record["upper"]  # half of 15 half steps
     assert (record["lower_bound_by"], record["proof_checked"]) == ("satisfiability", True)
     assert main(["compare", "d.npz", "e.npy", "--distances", "--json"]) == 0
     assert json.loads(capfd.readouterr().out)["proof_checked"] is None
