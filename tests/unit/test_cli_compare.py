@@ -110,7 +110,8 @@ def test_verify_has_the_proof_of_a_solver_checked(folder, capfd, compiled_search
     around = np.abs(np.subtract.outer(np.arange(24), np.arange(24)))
     np.save("circle.npy", np.minimum(around, 24 - around))
     np.save("segment.npy", np.abs(np.subtract.outer(np.arange(25), np.arange(25))) / 2)
-    code, out, _ = run(capfd, "compare", "circle.npy", "segment.npy", "--distances", "--verify", "--json", "--time-limit", "900")
+    limit = "--time-limit", "900"
+    code, out, _ = run(capfd, "compare", "circle.npy", "segment.npy", "--distances", "--verify", "--json", *limit)
     record = json.loads(out)
     assert code == 0 and record["lower"] <= 3.75 <= record["upper"]  # half of 15 half steps
     assert (record["lower_bound_by"], record["proof_checked"]) == ("satisfiability", True)
