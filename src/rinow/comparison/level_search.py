@@ -40,6 +40,8 @@ class LevelSearch:
             np.zeros((depth, 2), np.int64),
             np.zeros(n, np.bool_),
             np.zeros(m, np.bool_),
+            np.empty(Y.near.shape[1:], np.uint64),
+            np.empty(X.near.shape[1:], np.uint64),
         )
         root = correspondences.Relation(*(copies[0] for copies in self._stack[:4]))
         possible = engine.row_levels <= level
