@@ -15,6 +15,7 @@ __all__ = ["LevelSearch"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
+Flags = NDArray[np.bool_]
 
 FIRST_LIMIT = 500
 """Nodes of a search before its first restart; each run is half as long again."""
@@ -60,6 +61,12 @@ class LevelSearch:
                 decisions = self._stack.decisions[: self._progress[level_search.DEPTH]]
                 return False, np.unique(decisions, axis=0).astype(np.intp)
         return False, None
+
+    def possible(self) -> Flags:
+        """The pairs that are not refuted at the root."""
+        out = np.empty((self._stack.rows.shape[1], self._stack.columns.shape[1]), np.bool_)
+        correspondences.unpack(correspondences.Relation(*(copies[0] for copies in self._stack[:4])), out)
+        return out
 
     @property
     def error(self) -> float:

@@ -19,7 +19,7 @@ DEPTH, NODES, LIMIT, REFUTED = range(4)
 """Places in the progress: decisions made; nodes since the last restart, and how many are allowed; pairs refuted at the
 root."""
 
-THOROUGH_DEPTH, LARGE_COUNT = 1, 8
+THOROUGH_DEPTH, LARGE_COUNT = 1, 12
 """Decisions up to which every row supports the others; below them only rows with few pairs left, since others rarely
 exclude anything."""
 
