@@ -29,6 +29,7 @@ class Side(NamedTuple):
 
     codes: Any  # (n, n) int: the distances, as places in the list of those that occur
     near: Any  # (n, n_distances of the other space, words) uint64
+    lists: Any  # (n, n_distances * words) uint64: the same in two dimensions
 
 
 class Problem(NamedTuple):
@@ -213,10 +214,10 @@ def _propagate(problem, stack, depth, weights):
             changed = True
             work += n if place < n else m
             if place < n:
-                rows = (relation.rows, at, problem.Y.near, problem.X.codes[at], stack.near_row)
+                rows = (relation.rows, at, problem.Y.near, problem.Y.lists, problem.X.codes[at], stack.near_row)
                 emptied = _support(relation, stack, *rows, True)
             else:
-                columns = (relation.columns, at, problem.X.near, problem.Y.codes[at], stack.near_column)
+                columns = (relation.columns, at, problem.X.near, problem.X.lists, problem.Y.codes[at], stack.near_column)
                 emptied = _support(relation, stack, *columns, False)
             if emptied >= 0:
                 weights[emptied] += 1.0
@@ -226,12 +227,12 @@ def _propagate(problem, stack, depth, weights):
 
 
 @inner
-def _support(relation, stack, sets, at, near, codes, union, by_rows):
+def _support(relation, stack, sets, at, near, lists, codes, union, by_rows):
     """Delete the pairs that agree with no pair of the row (column) at a place; an emptied row or n + column, or -1."""
-    last = _unite(sets, at, near, union)
+    last = _unite(sets, at, lists, union)
     for i in range(sets.shape[0]):
         for w in range(sets.shape[1]):
-            without = sets[i, w] & ~union[codes[i], w]
+            without = sets[i, w] & ~union[codes[i] * sets.shape[1] + w]
             while without != ZERO:
                 j = (w << 6) + lowest_bit(without)
                 without &= without - ONE
@@ -247,7 +248,7 @@ def _support(relation, stack, sets, at, near, codes, union, by_rows):
 
 
 @inner
-def _unite(sets, at, near, union):
+def _unite(sets, at, lists, union):
     """Write to union[a] what is near the first points of a set for distance a; the last of these points."""
     union[:] = ZERO
     taken, last = 0, -1
@@ -257,9 +258,8 @@ def _unite(sets, at, near, union):
             last = (w << 6) + lowest_bit(word)
             word &= word - ONE
             taken += 1
-            for a in range(union.shape[0]):
-                for v in range(union.shape[1]):
-                    union[a, v] |= near[last, a, v]
+            for v in range(union.shape[0]):
+                union[v] |= lists[last, v]
     return last
 
 
