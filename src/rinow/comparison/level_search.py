@@ -41,8 +41,8 @@ class LevelSearch:
             np.zeros((depth, 2), np.int64),
             np.zeros(n, np.bool_),
             np.zeros(m, np.bool_),
-            np.empty(Y.lists.shape[1], np.uint64),
-            np.empty(X.lists.shape[1], np.uint64),
+            np.empty(Y.near.shape[1], np.uint64),
+            np.empty(X.near.shape[1], np.uint64),
         )
         root = correspondences.Relation(*(copies[0] for copies in self._stack[:4]))
         possible = engine.row_levels <= level
@@ -82,5 +82,5 @@ def _sides(DX: Floats, DY: Floats, level: float) -> tuple[level_search.Side, lev
     for D, own, others in ((DX, codes[0], values[1]), (DY, codes[1], values[0])):
         near = np.empty((len(D), len(others), -(-len(D) // 64)), np.uint64)
         level_search.agreeing(D, others, level, near)
-        sides.append(level_search.Side(own.reshape(D.shape), near, near.reshape(len(D), -1)))
+        sides.append(level_search.Side(own.reshape(D.shape), near.reshape(len(D), -1)))
     return sides[0], sides[1]

@@ -1,9 +1,9 @@
 """Branch and bound at one level between spaces with few distances, such as numbers of steps in graphs.
 
 For each point and each distance of the other space the points at a distance that agrees are listed once, as bits.  So
-one decision costs an intersection for each row and column, and what the pairs of a row support is a union of few sets:
-it soon contains everything that is still possible.  Each node is a hundred times cheaper than with the runs of
-`compatibility`, which any distances have.
+one decision costs an intersection for each row and column.  What the pairs of a row support is united once for each
+distance; then every other row is intersected with the union for its distance from that row.  Each node is hundreds of
+times cheaper than with the runs of `compatibility`, which any distances have.
 """
 
 from typing import Any, NamedTuple
@@ -21,15 +21,14 @@ root."""
 
 THOROUGH_DEPTH, LARGE_COUNT = 1, 12
 """Decisions up to which every row supports the others; below them only rows with few pairs left, since others rarely
-exclude anything."""
+exclude anything.  So many pairs are united, the support by more of them is looked up where these do not suffice."""
 
 
 class Side(NamedTuple):
     """One space, and which of its points agree with the distances of the other one."""
 
     codes: Any  # (n, n) int: the distances, as places in the list of those that occur
-    near: Any  # (n, n_distances of the other space, words) uint64
-    lists: Any  # (n, n_distances * words) uint64: the same in two dimensions
+    near: Any  # (n, n_distances of the other space * words) uint64: the sets for one point stand in one row
 
 
 class Problem(NamedTuple):
@@ -51,8 +50,8 @@ class Stack(NamedTuple):
     decisions: Any  # (depth, 2)
     changed_rows: Any  # (n,) bool
     changed_columns: Any  # (m,) bool
-    near_row: Any  # (n_distances of X, words of Y): what the pairs of a row support
-    near_column: Any  # (n_distances of Y, words of X)
+    near_row: Any  # (n_distances of X * words of Y,): what the pairs of a row support
+    near_column: Any  # (n_distances of Y * words of X,)
 
 
 @kernel
@@ -184,7 +183,7 @@ def _intersect(sets, counts, out, out_counts, changed, near, codes):
     for i in range(sets.shape[0]):
         count = 0
         for w in range(sets.shape[1]):
-            out[i, w] = sets[i, w] & near[codes[i], w]
+            out[i, w] = sets[i, w] & near[codes[i] * sets.shape[1] + w]
             count += popcount(out[i, w])
         out_counts[i] = count
         changed[i] = count != counts[i]
@@ -214,10 +213,10 @@ def _propagate(problem, stack, depth, weights):
             changed = True
             work += n if place < n else m
             if place < n:
-                rows = (relation.rows, at, problem.Y.near, problem.Y.lists, problem.X.codes[at], stack.near_row)
+                rows = (relation.rows, at, problem.Y.near, problem.X.codes[at], stack.near_row)
                 emptied = _support(relation, stack, *rows, True)
             else:
-                columns = (relation.columns, at, problem.X.near, problem.X.lists, problem.Y.codes[at], stack.near_column)
+                columns = (relation.columns, at, problem.X.near, problem.Y.codes[at], stack.near_column)
                 emptied = _support(relation, stack, *columns, False)
             if emptied >= 0:
                 weights[emptied] += 1.0
@@ -227,9 +226,9 @@ def _propagate(problem, stack, depth, weights):
 
 
 @inner
-def _support(relation, stack, sets, at, near, lists, codes, union, by_rows):
+def _support(relation, stack, sets, at, near, codes, union, by_rows):
     """Delete the pairs that agree with no pair of the row (column) at a place; an emptied row or n + column, or -1."""
-    last = _unite(sets, at, lists, union)
+    last = _unite(sets, at, near, union)
     for i in range(sets.shape[0]):
         for w in range(sets.shape[1]):
             without = sets[i, w] & ~union[codes[i] * sets.shape[1] + w]
@@ -248,8 +247,8 @@ def _support(relation, stack, sets, at, near, lists, codes, union, by_rows):
 
 
 @inner
-def _unite(sets, at, lists, union):
-    """Write to union[a] what is near the first points of a set for distance a; the last of these points."""
+def _unite(sets, at, near, union):
+    """Write to `union` what is near the first points of a set, for each distance; the last of these points."""
     union[:] = ZERO
     taken, last = 0, -1
     for w in range(sets.shape[1]):
@@ -259,7 +258,7 @@ def _unite(sets, at, lists, union):
             word &= word - ONE
             taken += 1
             for v in range(union.shape[0]):
-                union[v] |= lists[last, v]
+                union[v] |= near[last, v]
     return last
 
 
@@ -267,7 +266,7 @@ def _unite(sets, at, lists, union):
 def _supported(sets, at, near, code, j, last):
     """Whether point j is near a point of a set after the last one that was united."""
     for w in range((last + 1) >> 6, sets.shape[1]):
-        word = sets[at, w] & near[j, code, w]
+        word = sets[at, w] & near[j, code * sets.shape[1] + w]
         if w == (last + 1) >> 6:
             word &= ~(bit(last + 1) - ONE)
         if word != ZERO:
