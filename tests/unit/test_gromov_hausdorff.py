@@ -21,6 +21,7 @@ from rinow.comparison.gromov_hausdorff import first_interval
 from rinow.comparison.level_search import LevelSearch
 from rinow.comparison.levels import Levels
 from rinow.comparison.relaxation import relaxed_maps
+from rinow.comparison.satisfiability import Satisfiability
 from rinow.comparison.symmetry import isometries
 from rinow.errors import InvalidInputError, NotAMetricError
 
@@ -282,3 +283,38 @@ def test_search_at_one_level_agrees_with_brute_force(seed):
         assert refuted == (level < exact - 1e-12)  # polygons: distances that should be equal differ by rounding
         if pairs is not None:
             assert distortion(pairs, X, Y) <= level
+
+
+@SLOW
+@pytest.mark.parametrize("n", [40, 70, 130])
+def test_search_at_one_level_begins_with_what_arc_consistency_leaves(n):
+    """The engine for any distances comes to the same pairs by runs of sorted rows."""
+    rng = np.random.default_rng(n)
+    X, Y = hops(rng, n, share=0.5 / n), hops(rng, n - 2, share=0.5 / n)
+    engine, clock, partly = Engine(X, Y), Clock(math.inf), 0
+    symmetries = isometries(X, Clock(0.0)), isometries(Y, Clock(0.0))
+    for level in range(1, int(max(X.max(), Y.max()))):
+        search, expected = LevelSearch(engine, float(level), symmetries), engine.consistent(float(level), clock)
+        assert search.consistent == (expected is not None)
+        if expected is not None:
+            np.testing.assert_array_equal(search.possible(), expected)
+            partly += not np.array_equal(expected, engine.row_levels <= level)
+    assert partly > 0  # at some level it deletes pairs, but not all of a point
+
+
+@SLOW
+def test_search_at_one_level_agrees_with_clause_learning():
+    """Spaces of up to 24 points, beyond what brute force can do: sets larger than those that are united."""
+    decided = set()
+    for seed in range(130, 142):
+        rng = np.random.default_rng(seed)
+        X, Y = (hops(rng, n, share=0.15) for n in rng.integers(16, 25, 2))
+        engine, clock = Engine(X, Y), Clock(math.inf)
+        symmetries = isometries(X, clock), isometries(Y, clock)
+        for level in (1.0, 2.0):
+            search = LevelSearch(engine, level, symmetries)
+            refuted, _ = search.run(clock) if search.consistent else (True, None)
+            with Satisfiability(engine, engine.row_levels <= level, level, clock) as solver:
+                assert solver.run(clock)[0] == refuted
+            decided.add(refuted)
+    assert decided == {True, False}

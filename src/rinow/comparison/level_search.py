@@ -15,6 +15,7 @@ __all__ = ["LevelSearch"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
+Flags = NDArray[np.bool_]
 
 FIRST_LIMIT = 500
 """Nodes of a search before its first restart; each run is half as long again."""
@@ -40,6 +41,8 @@ class LevelSearch:
             np.zeros((depth, 2), np.int64),
             np.zeros(n, np.bool_),
             np.zeros(m, np.bool_),
+            np.empty(Y.near.shape[1], np.uint64),
+            np.empty(X.near.shape[1], np.uint64),
         )
         root = correspondences.Relation(*(copies[0] for copies in self._stack[:4]))
         possible = engine.row_levels <= level
@@ -59,6 +62,12 @@ class LevelSearch:
                 return False, np.unique(decisions, axis=0).astype(np.intp)
         return False, None
 
+    def possible(self) -> Flags:
+        """The pairs that are not refuted at the root."""
+        out = np.empty((self._stack.rows.shape[1], self._stack.columns.shape[1]), np.bool_)
+        correspondences.unpack(correspondences.Relation(*(copies[0] for copies in self._stack[:4])), out)
+        return out
+
     @property
     def error(self) -> float:
         """Rounding of the isometries that a proof used: each leads to a deeper decision, or at the root on."""
@@ -73,5 +82,5 @@ def _sides(DX: Floats, DY: Floats, level: float) -> tuple[level_search.Side, lev
     for D, own, others in ((DX, codes[0], values[1]), (DY, codes[1], values[0])):
         near = np.empty((len(D), len(others), -(-len(D) // 64)), np.uint64)
         level_search.agreeing(D, others, level, near)
-        sides.append(level_search.Side(own.reshape(D.shape), near))
+        sides.append(level_search.Side(own.reshape(D.shape), near.reshape(len(D), -1)))
     return sides[0], sides[1]

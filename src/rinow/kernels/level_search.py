@@ -1,9 +1,9 @@
 """Branch and bound at one level between spaces with few distances, such as numbers of steps in graphs.
 
 For each point and each distance of the other space the points at a distance that agrees are listed once, as bits.  So
-one decision costs an intersection for each row and column, and what the pairs of a row support is a union of few sets:
-it soon contains everything that is still possible.  Each node is a hundred times cheaper than with the runs of
-`compatibility`, which any distances have.
+one decision costs an intersection for each row and column.  What the pairs of a row support is united once for each
+distance; then every other row is intersected with the union for its distance from that row.  Each node is hundreds of
+times cheaper than with the runs of `compatibility`, which any distances have.
 """
 
 from typing import Any, NamedTuple
@@ -19,16 +19,16 @@ DEPTH, NODES, LIMIT, REFUTED = range(4)
 """Places in the progress: decisions made; nodes since the last restart, and how many are allowed; pairs refuted at the
 root."""
 
-THOROUGH_DEPTH, LARGE_COUNT = 1, 8
+THOROUGH_DEPTH, LARGE_COUNT = 1, 12
 """Decisions up to which every row supports the others; below them only rows with few pairs left, since others rarely
-exclude anything."""
+exclude anything.  So many pairs are united, the support by more of them is looked up where these do not suffice."""
 
 
 class Side(NamedTuple):
     """One space, and which of its points agree with the distances of the other one."""
 
     codes: Any  # (n, n) int: the distances, as places in the list of those that occur
-    near: Any  # (n, n_distances of the other space, words) uint64
+    near: Any  # (n, n_distances of the other space * words) uint64: the sets for one point stand in one row
 
 
 class Problem(NamedTuple):
@@ -50,6 +50,8 @@ class Stack(NamedTuple):
     decisions: Any  # (depth, 2)
     changed_rows: Any  # (n,) bool
     changed_columns: Any  # (m,) bool
+    near_row: Any  # (n_distances of X * words of Y,): what the pairs of a row support
+    near_column: Any  # (n_distances of Y * words of X,)
 
 
 @kernel
@@ -181,7 +183,7 @@ def _intersect(sets, counts, out, out_counts, changed, near, codes):
     for i in range(sets.shape[0]):
         count = 0
         for w in range(sets.shape[1]):
-            out[i, w] = sets[i, w] & near[codes[i], w]
+            out[i, w] = sets[i, w] & near[codes[i] * sets.shape[1] + w]
             count += popcount(out[i, w])
         out_counts[i] = count
         changed[i] = count != counts[i]
@@ -211,9 +213,11 @@ def _propagate(problem, stack, depth, weights):
             changed = True
             work += n if place < n else m
             if place < n:
-                emptied = _support(relation, stack, relation.rows, at, problem.Y.near, problem.X.codes[at], True)
+                rows = (relation.rows, at, problem.Y.near, problem.X.codes[at], stack.near_row)
+                emptied = _support(relation, stack, *rows, True)
             else:
-                emptied = _support(relation, stack, relation.columns, at, problem.X.near, problem.Y.codes[at], False)
+                columns = (relation.columns, at, problem.X.near, problem.Y.codes[at], stack.near_column)
+                emptied = _support(relation, stack, *columns, False)
             if emptied >= 0:
                 weights[emptied] += 1.0
                 weights[place] += 1.0
@@ -222,16 +226,17 @@ def _propagate(problem, stack, depth, weights):
 
 
 @inner
-def _support(relation, stack, sets, at, near, codes, by_rows):
+def _support(relation, stack, sets, at, near, codes, union, by_rows):
     """Delete the pairs that agree with no pair of the row (column) at a place; an emptied row or n + column, or -1."""
-    without = np.empty(sets.shape[1], np.uint64)
+    last = _unite(sets, at, near, union)
     for i in range(sets.shape[0]):
-        if i == at or not _unsupported(sets[i], sets[at], near, codes[i], without):
-            continue
-        for w in range(without.shape[0]):
-            while without[w] != ZERO:
-                j = (w << 6) + lowest_bit(without[w])
-                without[w] &= ~bit(j)
+        for w in range(sets.shape[1]):
+            without = sets[i, w] & ~union[codes[i] * sets.shape[1] + w]
+            while without != ZERO:
+                j = (w << 6) + lowest_bit(without)
+                without &= without - ONE
+                if _supported(sets, at, near, codes[i], j, last):
+                    continue
                 x, y = (i, j) if by_rows else (j, i)
                 _delete(relation, stack, x, y)
                 if relation.row_counts[x] == 0:
@@ -242,19 +247,28 @@ def _support(relation, stack, sets, at, near, codes, by_rows):
 
 
 @inner
-def _unsupported(own, support, near, code, out):
-    """Write to out the points of a set that are near no point of the supporting set; whether there is one."""
-    for w in range(own.shape[0]):  # by hand: an assignment of arrays takes longer
-        out[w] = own[w]
-    for w in range(support.shape[0]):
-        word = support[w]
-        while word != ZERO:
-            j = (w << 6) + lowest_bit(word)
+def _unite(sets, at, near, union):
+    """Write to `union` what is near the first points of a set, for each distance; the last of these points."""
+    union[:] = ZERO
+    taken, last = 0, -1
+    for w in range(sets.shape[1]):
+        word = sets[at, w]
+        while word != ZERO and taken < LARGE_COUNT:
+            last = (w << 6) + lowest_bit(word)
             word &= word - ONE
-            left = ZERO
-            for v in range(out.shape[0]):
-                out[v] &= ~near[j, code, v]
-                left |= out[v]
-            if left == ZERO:
-                return False
-    return True
+            taken += 1
+            for v in range(union.shape[0]):
+                union[v] |= near[last, v]
+    return last
+
+
+@inner
+def _supported(sets, at, near, code, j, last):
+    """Whether point j is near a point of a set after the last one that was united."""
+    for w in range((last + 1) >> 6, sets.shape[1]):
+        word = sets[at, w] & near[j, code * sets.shape[1] + w]
+        if w == (last + 1) >> 6:
+            word &= ~(bit(last + 1) - ONE)
+        if word != ZERO:
+            return True
+    return False
