@@ -1,0 +1,21 @@
+// The parts of three.js that viewer.js uses; the README beside says how they become three.min.js.
+export {
+  BufferAttribute,
+  BufferGeometry,
+  DoubleSide,
+  GLSL3,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  NoBlending,
+  PerspectiveCamera,
+  Points,
+  Raycaster,
+  Scene,
+  ShaderMaterial,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+  WebGLRenderTarget,
+} from "three";
+export { OrbitControls } from "three/addons/controls/OrbitControls.js";
