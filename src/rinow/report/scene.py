@@ -28,7 +28,7 @@ Floats = NDArray[np.float64]
 POSITION_STEPS = 2**20 - 1
 """Steps along the longest side of the bounding box: a tenth of a pixel on the largest screens."""
 DIRECTION_STEPS = 127
-MOST_DIRECTIONS = 20_000
+MOST_DIRECTIONS = 8_000
 """Vertices at which principal directions are drawn; more lines hide the surface."""
 LARGE, BITS_OF_LARGE = 200_000, 12
 """Vertices from which on fields keep that many bits, nearly four digits, which halves the page."""
@@ -130,7 +130,7 @@ def compact(values: Floats) -> NDArray[np.floating[Any]]:
 
 
 def pack(arrays: Mapping[str, NDArray[Any]]) -> tuple[list[dict[str, Any]], str]:
-    """Entries of the header and the text of all arrays, one after the other.
+    r"""Entries of the header and the text of all arrays, one after the other.
 
     Examples
     --------
@@ -138,7 +138,7 @@ def pack(arrays: Mapping[str, NDArray[Any]]) -> tuple[list[dict[str, Any]], str]
     >>> entries
     [{'name': 'status', 'type': 'uint8', 'rows': 3, 'columns': 1, 'differences': False}]
     >>> gzip.decompress(base64.b64decode(text))
-    b'\\x00\\x01\\x00'
+    b'\x00\x01\x00'
     """
     entries: list[dict[str, Any]] = []
     blocks: list[bytes] = []
@@ -165,18 +165,17 @@ def pack(arrays: Mapping[str, NDArray[Any]]) -> tuple[list[dict[str, Any]], str]
 
 def _directions(study: SurfaceStudy, origin: Floats) -> dict[str, NDArray[Any]]:
     """Principal directions at vertices all over the surface, rounded; nothing if no vertex has any."""
-    curvature, V = study.curvature, study.mesh.vertices
-    known = np.flatnonzero(np.isfinite(curvature.direction1).all(axis=1) & np.isfinite(curvature.direction2).all(axis=1))
+    both = {name: np.asarray(getattr(study.curvature, name)) for name in ("direction1", "direction2")}
+    known = np.flatnonzero(np.isfinite(np.hstack(list(both.values()))).all(axis=1))
     if len(known) == 0:
         return {}
     cell = float(np.sqrt(study.mesh.vertex_areas.sum() / MOST_DIRECTIONS))
     chosen = known
     while len(chosen) > MOST_DIRECTIONS:
-        i, j, k = np.floor((V[known] - origin) / cell).astype(np.int64).T
+        i, j, k = np.floor((study.mesh.vertices[known] - origin) / cell).astype(np.int64).T
         chosen = known[np.unique((i * 2**21 + j) * 2**21 + k, return_index=True)[1]]
         cell *= 1.2
     vertices = np.sort(chosen)
-    both = {"direction1": curvature.direction1, "direction2": curvature.direction2}
     rounded = {name: np.rint(d[vertices] * DIRECTION_STEPS).astype(np.int8) for name, d in both.items()}
     return {"direction_vertices": vertices.astype(np.uint32), **rounded}
 

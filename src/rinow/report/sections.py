@@ -17,9 +17,18 @@ __all__ = ["sections"]
 
 SPREAD = (
     "The spread is one standard error of the Gaussian curvature at a vertex, as the method can tell from the data: "
-    "the true value is more likely than not within one spread, and it may be further away where the surface is not what "
-    "the mesh suggests.  It is an estimate, no bound."
+    "where the surface is as smooth as the mesh suggests, nearly all errors stay below two spreads.  It is an "
+    "estimate, no bound."
 )
+FAULTS = (
+    "nonmanifold_edges",
+    "nonmanifold_vertices",
+    "unused_vertices",
+    "nonfinite_vertices",
+    "degenerate_faces",
+    "misoriented_faces",
+)
+"""Counts of a mesh that are told where they are not 0."""
 
 
 def sections(study: SurfaceStudy, features: FeatureStudy | None, *, version: str, made: str) -> str:
@@ -55,7 +64,7 @@ def _totals(study: SurfaceStudy) -> str:
     counts, totals = mesh_counts(mesh), surface_totals(mesh, study.curvature.gaussian)
     share = totals.area_with_value / totals.area if totals.area > 0.0 else math.nan
     known = "" if share > 0.9999 else f", over the {100 * share:.3g} % of the area that have a value"
-    faults = {name: n for name, n in counts.items() if n and name.startswith(("nonman", "unused", "nonfin", "degen", "mis"))}
+    faults = [(name.replace("_", " "), counts[name], "") for name in FAULTS if counts[name]]
     rows: list[tuple[str, float, str]] = [
         ("area", totals.area, f"{unit}²"),
         ("Euler characteristic χ", totals.euler_characteristic, ""),
@@ -65,7 +74,7 @@ def _totals(study: SurfaceStudy) -> str:
         ("total curvature, by angle defects", totals.inner_defects, "rad"),
         ("turning of the boundary", totals.boundary_turning, "rad"),
         (f"sum of K times area{known}", totals.gaussian_integral, "rad"),
-        *((name.replace("_", " "), n, "") for name, n in faults.items()),
+        *faults,
     ]
     text = (
         "Gauss and Bonnet: curvature and turning add up to 2πχ.  The sum of K times area has what smooth parts "

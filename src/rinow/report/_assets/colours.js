@@ -77,12 +77,11 @@ function drawLegend(svg, field, low, high, areas) {
   const colourAt = (share) => cssColour(field.map, 3 * placeInMap(share, 0, 1, field.map));
   h.bins.forEach((b, i) => {
     const tall = Math.max(b > 0 ? 1 : 0, (b / top_share) * (top - 18));
-    items.push(rectangle(x(i / BINS), top - tall, (right - left) / BINS - 0.6, tall, colourAt((i + 0.5) / BINS)));
+    items.push(rectangle(x(i / BINS), top - tall, (right - left) / BINS - 0.6, tall, "", "bar"));
   });
-  const tails = [[h.below, left - 15, 0, "start", 0], [h.above, right + 5, 0.999, "end", width]];
-  for (const [share, at, place, anchor, edge] of tails) {
+  for (const [share, at, anchor, edge] of [[h.below, left - 14, "start", 0], [h.above, right + 4, "end", width]]) {
     const tall = Math.min(top - 18, Math.max(share > 0 ? 1.5 : 0, (share / top_share) * (top - 18)));
-    items.push(rectangle(at, top - tall, 10, tall, colourAt(place), "tail"));
+    items.push(rectangle(at, top - tall, 10, tall, "", "tail"));
     if (share > 0) items.push(label(edge, 10, `${percent(share)} ${anchor === "start" ? "below" : "above"}`, anchor));
   }
   for (let i = 0; i < 128; i++) {
@@ -100,9 +99,10 @@ function drawLegend(svg, field, low, high, areas) {
   return h;
 }
 
-function rectangle(x, y, width, height, colour, kind = "") {
+/** A rectangle in a colour, or in that of a kind of the style sheet. */
+function rectangle(x, y, width, height, colour, kind) {
   const place = `x="${x.toFixed(2)}" y="${y.toFixed(2)}" width="${width.toFixed(2)}" height="${height.toFixed(2)}"`;
-  return `<rect ${place} fill="${colour}" class="${kind}"/>`;
+  return `<rect ${place} ${kind ? `class="${kind}"` : `fill="${colour}"`}/>`;
 }
 
 function label(x, y, text, anchor) {

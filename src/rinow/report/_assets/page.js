@@ -58,7 +58,11 @@ class Page {
     canvas.addEventListener("pointerdown", (event) => { start = event; });
     canvas.addEventListener("pointerup", (event) => {
       const moved = start && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY);
-      if (start && moved < DRAG && event.button === 0) this.hold(this.viewer.pick(event.offsetX, event.offsetY));
+      if (start && moved < DRAG && event.button === 0) {
+        this.pointer = event;
+        this.hold(this.viewer.pick(event.offsetX, event.offsetY));
+        this.hover();
+      }
       start = undefined;
     });
     canvas.addEventListener("pointermove", (event) => {
@@ -214,10 +218,10 @@ class Page {
     const { arrays, statuses, origin, step, unit } = this.scene;
     const code = arrays.status[vertex];
     const [name, meaning] = Object.entries(statuses)[code];
-    const digits = Math.max(6, 1 - Math.round(Math.log10(this.scene.precision)));
-    const place = [0, 1, 2].map((c) => written(origin[c] + step * arrays.positions[3 * vertex + c], 7));
-    this.line("vertex", `${vertex} (from 0)`);
-    this.line("position", name === "NONFINITE" ? "not finite" : place.join(", "), unit);
+    const digits = Math.max(5, -Math.round(Math.log10(this.scene.precision)));
+    const place = [0, 1, 2].map((c) => written(origin[c] + step * arrays.positions[3 * vertex + c], 6));
+    this.line("vertex", `${vertex} (counted from 0)`);
+    this.line("position", name === "NONFINITE" ? "not finite" : `${place.join(", ")} ${unit}`);
     for (const id of READOUT) {
       const f = this.fields.get(id);
       if (f) this.line(SHORT_NAMES[id], (id === "spread" ? "± " : "") + written(f.values[vertex], id === "spread" ? 3 : digits), f.unit);

@@ -65,7 +65,8 @@ void main() {
 const POINT_VERTEX = `
 uniform float size;
 void main() {
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-  gl_Position.z -= 0.0005 * gl_Position.w;
+  vec4 place = modelViewMatrix * vec4(position, 1.0);
+  place.xyz *= 0.999; // in front of the surface that it is on
+  gl_Position = projectionMatrix * place;
   gl_PointSize = size;
 }`;

@@ -1,6 +1,7 @@
 "use strict";
 // The surface in three dimensions: drawing, moving, and which vertex is under the pointer.
 
+const HALF_DIAGONAL = 0.9; // of the unit cube, and a little more
 const UP = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
 class Viewer {
@@ -17,7 +18,7 @@ class Viewer {
     this.world.add((this.surface = this.makeSurface()));
     this.world.add((this.marker = this.makePoints([0], MARK_FRAGMENT, 15)));
     this.marker.visible = false;
-    this.camera = new THREE.PerspectiveCamera(24, 1, 0.005, 60);
+    this.camera = new THREE.PerspectiveCamera(24, 1);
     this.pickTarget = new THREE.WebGLRenderTarget(1, 1);
     this.pickMaterial = new THREE.ShaderMaterial({
       glslVersion: THREE.GLSL3, vertexShader: PICK_VERTEX, fragmentShader: PICK_FRAGMENT,
@@ -59,10 +60,10 @@ class Viewer {
     return points;
   }
 
-  makeLines(places, colour) {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(places, 3));
-    const lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: colour }));
+  makeLines(places, color, linewidth) {
+    const geometry = new THREE.LineSegmentsGeometry().setPositions(places);
+    const material = new THREE.LineMaterial({ color, linewidth, polygonOffset: true, polygonOffsetUnits: -4 });
+    const lines = new THREE.LineSegments2(geometry, material);
     lines.frustumCulled = false;
     return lines;
   }
@@ -107,7 +108,7 @@ class Viewer {
           places[6 * i + 3 + c] = this.places[3 * v + c] + reach;
         }
       });
-      return this.makeLines(places, colour);
+      return this.makeLines(places, colour, 1.5);
     };
     this.toggle("directions", shown, () => [make(direction1, 0x101010), make(direction2, 0x00a36c)]);
   }
@@ -117,8 +118,8 @@ class Viewer {
     this.toggle("features", shown, () => {
       const places = new Float32Array(3 * edges.length);
       edges.forEach((v, i) => places.set(this.placeOf(v), 3 * i));
-      const lines = this.makeLines(places, 0xffb000);
-      return [lines, this.makePoints(cones, POINT_FRAGMENT, 9, [0.86, 0.15, 0.5]),
+      const lines = this.makeLines(places, 0xffb000, 2.5);
+      return [lines, this.makePoints(cones, POINT_FRAGMENT, 12, [0.86, 0.15, 0.5]),
         this.makePoints(corners, POINT_FRAGMENT, 7, [0.1, 0.1, 0.1])];
     });
   }
@@ -210,6 +211,10 @@ class Viewer {
     if (this.frame) cancelAnimationFrame(this.frame);
     this.frame = undefined;
     this.pickIsStale = true;
+    const distance = this.camera.position.length();
+    this.camera.near = Math.max(0.003, distance - HALF_DIAGONAL);
+    this.camera.far = distance + HALF_DIAGONAL;
+    this.camera.updateProjectionMatrix();
     this.renderer.render(this.world, this.camera);
   }
 

@@ -4,8 +4,6 @@ export {
   BufferGeometry,
   DoubleSide,
   GLSL3,
-  LineBasicMaterial,
-  LineSegments,
   Mesh,
   NoBlending,
   PerspectiveCamera,
@@ -19,3 +17,6 @@ export {
   WebGLRenderTarget,
 } from "three";
 export { OrbitControls } from "three/addons/controls/OrbitControls.js";
+export { LineMaterial } from "three/addons/lines/LineMaterial.js";
+export { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+export { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
