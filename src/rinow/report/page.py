@@ -30,6 +30,7 @@ SCRIPTS = (
     "geometry.js",
     "viewer.js",
     "picture.js",
+    "keys.js",
     "page.js",
 )
 """In the order in which they need each other."""

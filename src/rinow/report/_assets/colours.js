@@ -71,18 +71,19 @@ function drawLegend(svg, field, low, high, areas) {
   const h = histogram(field.values, areas, low, high);
   const [width, top, bar, height] = [320, 96, 14, 132];
   const [left, right] = [26, width - 26];
-  const top_share = Math.max(...h.bins, 1e-12);
+  const largest = Math.max(...h.bins, 1e-12);
   const x = (share) => left + (right - left) * share;
   const items = [];
   const colourAt = (share) => cssColour(field.map, 3 * placeInMap(share, 0, 1, field.map));
   h.bins.forEach((b, i) => {
-    const tall = Math.max(b > 0 ? 1 : 0, (b / top_share) * (top - 18));
+    const tall = Math.max(b > 0 ? 1 : 0, (b / largest) * (top - 18));
     items.push(rectangle(x(i / BINS), top - tall, (right - left) / BINS - 0.6, tall, "", "bar"));
   });
   for (const [share, at, anchor, edge] of [[h.below, left - 14, "start", 0], [h.above, right + 4, "end", width]]) {
-    const tall = Math.min(top - 18, Math.max(share > 0 ? 1.5 : 0, (share / top_share) * (top - 18)));
+    if (share === 0) continue;
+    const tall = Math.min(top - 18, Math.max(2, (share / largest) * (top - 18)));
     items.push(rectangle(at, top - tall, 10, tall, "", "tail"));
-    if (share > 0) items.push(label(edge, 10, `${percent(share)} ${anchor === "start" ? "below" : "above"}`, anchor));
+    items.push(label(edge, 10, `${percent(share)} ${anchor === "start" ? "below" : "above"}`, anchor));
   }
   for (let i = 0; i < 128; i++) {
     items.push(rectangle(x(i / 128), top + 3, (right - left) / 128 + 0.5, bar, colourAt((i + 0.5) / 128)));

@@ -1,5 +1,5 @@
 "use strict";
-// Controls, keyboard, address and readout; the state of the page is in one object.
+// Controls, address and readout; the state of the page is in one object.
 
 const $ = (id) => document.getElementById(id);
 const LAYERS = ["smooth", "edges", "directions", "features"];
@@ -47,7 +47,7 @@ class Page {
     $("reset").onclick = () => this.reset(this.up);
     for (const name of LAYERS) $(name).onchange = () => this.show(name, $(name).checked);
     for (const button of document.querySelectorAll("[data-up]")) button.onclick = () => this.reset(button.dataset.up);
-    addEventListener("keydown", (event) => this.key(event));
+    addEventListener("keydown", (event) => pressed(this, event));
     addEventListener("hashchange", () => this.followAddress());
     addEventListener("beforeprint", () => this.printView());
     this.listenToPointer($("canvas"));
@@ -81,6 +81,7 @@ class Page {
     if (low < high) this.setRange(low, high);
     for (const name of LAYERS) if (wish.has(name)) this.show(name, wish.get(name) === "1");
     this.hold(this.vertexOf(wish.get("vertex")));
+    if (this.held >= 0) this.viewer?.centre(this.held);
     if (wish.has("zoom")) this.viewer?.zoom(1 / Number(wish.get("zoom")));
   }
 
@@ -115,11 +116,10 @@ class Page {
 
   /** Take over what was typed into one end of the range. */
   readRange(changed) {
-    const typed = Number($(changed).value.trim().replace("−", "-").replace(",", ".") || NaN);
+    const typed = typedNumber($(changed));
     if ($("symmetric").checked) $(changed === "low" ? "high" : "low").value = String(-typed);
-    const [low, high] = [Number($("low").value), Number($("high").value)];
-    const valid = Number.isFinite(typed) && low < high;
-    if (valid) this.setRange(low, high);
+    const [low, high] = [typedNumber($("low")), typedNumber($("high"))];
+    if (low < high && Number.isFinite(high - low)) this.setRange(low, high);
     else $(changed).setAttribute("aria-invalid", "true");
   }
 
@@ -131,13 +131,13 @@ class Page {
     $("categories").hidden = !isCategory;
     if (isCategory) return this.drawCategories();
     const { without } = drawLegend($("legend"), field, this.low, this.high, scene.arrays.areas);
-    const undefinedVertices = field.values.reduce((n, v) => n + Number.isNaN(v), 0);
+    this.undefinedVertices = field.values.reduce((n, v) => n + Number.isNaN(v), 0);
     const parts = [
       field.unit === "1" ? "No unit." : `Unit ${field.unit}.`,
       field.signed ? "Convex is positive." : "",
-      "Histogram by area; dashed bars: beyond the colours.",
-      undefinedVertices > 0
-        ? `Grey: undefined (nan) at ${undefinedVertices.toLocaleString("en")} vertices, ${percent(without)} of the area.`
+      "Histogram by area; light bars at its ends: beyond the colours.",
+      this.undefinedVertices > 0
+        ? `Grey: undefined (nan) at ${this.undefinedVertices.toLocaleString("en")} vertices, ${percent(without)} of the area.`
         : "Defined at every vertex.",
     ];
     $("legend-note").textContent = parts.filter(Boolean).join(" ");
@@ -219,9 +219,13 @@ class Page {
     const code = arrays.status[vertex];
     const [name, meaning] = Object.entries(statuses)[code];
     const digits = Math.max(5, -Math.round(Math.log10(this.scene.precision)));
-    const place = [0, 1, 2].map((c) => written(origin[c] + step * arrays.positions[3 * vertex + c], 6));
+    const decimals = Math.ceil(-Math.log10(step));
+    const place = [0, 1, 2].map((c) => {
+      const x = origin[c] + step * arrays.positions[3 * vertex + c];
+      return decimals >= 0 && decimals < 12 ? x.toFixed(decimals).replace("-", "−") : written(x, 6);
+    });
     this.line("vertex", `${vertex} (counted from 0)`);
-    this.line("position", name === "NONFINITE" ? "not finite" : `${place.join(", ")} ${unit}`);
+    this.line("x, y, z", name === "NONFINITE" ? "not finite" : `${place.join(", ")} ${unit}`, undefined, "place");
     for (const id of READOUT) {
       const f = this.fields.get(id);
       if (f) this.line(SHORT_NAMES[id], (id === "spread" ? "± " : "") + written(f.values[vertex], id === "spread" ? 3 : digits), f.unit);
@@ -229,43 +233,22 @@ class Page {
     this.line("status", `${code} ${name}: ${meaning}`);
   }
 
-  line(name, value, unit) {
+  /** A line of the readout; without a unit the value has the room of both. */
+  line(name, value, unit, kind = "") {
     const [term, number, of] = ["dt", "dd", "dd"].map((tag) => document.createElement(tag));
     term.textContent = name;
     number.textContent = value;
     of.textContent = unit === "1" ? "" : unit ?? "";
     of.className = "unit";
-    if (unit === undefined) number.className = "wide";
+    if (unit === undefined) number.className = `wide ${kind}`;
     $("readout").append(term, number, ...(unit === undefined ? [] : [of]));
   }
 
-  key(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || $("help").open) return;
-    if (/^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName) && event.target.type !== "checkbox") return;
-    const names = [...this.fields.keys()];
-    const next = (by) => this.choose(names[(names.indexOf(this.field.name) + by + names.length) % names.length]);
-    const scale = (by) => {
-      const middle = this.field.signed ? (this.low + this.high) / 2 : 0;
-      if (!this.field.categories) this.setRange(middle + (this.low - middle) * by, middle + (this.high - middle) * by);
-    };
-    const actions = {
-      ArrowLeft: () => this.viewer?.turn(-0.1, 0), ArrowRight: () => this.viewer?.turn(0.1, 0),
-      ArrowUp: () => this.viewer?.turn(0, 0.1), ArrowDown: () => this.viewer?.turn(0, -0.1),
-      "+": () => this.viewer?.zoom(0.8), "=": () => this.viewer?.zoom(0.8), "-": () => this.viewer?.zoom(1.25),
-      f: () => next(1), F: () => next(-1), "[": () => scale(0.5), "]": () => scale(2), 0: () => this.choose(this.field.name),
-      e: () => this.show("edges", !$("edges").checked), d: () => this.show("directions", !$("directions").checked),
-      s: () => this.show("features", !$("features").checked), r: () => this.reset(this.up), p: () => this.save(),
-      c: () => this.held >= 0 && this.viewer?.centre(this.held), Escape: () => this.hold(-1), "?": () => $("help").showModal(),
-    };
-    const action = actions[event.key];
-    const scrolls = event.key.startsWith("Arrow") && event.target !== $("canvas") && event.target !== document.body;
-    if (!action || scrolls) return;
-    event.preventDefault();
-    action();
-  }
-
   printView() {
-    if (this.viewer) $("still").firstElementChild.src = pictureOf(this).toDataURL("image/png");
+    if (!this.viewer) return;
+    const [picture, caption] = $("still").children;
+    picture.src = pictureOf(this, { paper: "#fff", ink: "#000" }).toDataURL("image/png");
+    picture.alt = caption.textContent = `The view when this page was printed, coloured by ${this.field.title}.`;
   }
 
   save() {
@@ -277,13 +260,19 @@ class Page {
   }
 }
 
+/** A number with a decimal point or comma; nan if it is none. */
+function typedNumber(input) {
+  const text = input.value.trim().replace("−", "-").replace(",", ".");
+  return text === "" ? NaN : Number(text);
+}
+
 async function start() {
   $("message").textContent = "Unpacking the surface …";
   try {
     if (!window.DecompressionStream) throw new Error("this browser is too old (it lacks DecompressionStream)");
     const scene = await readScene();
     document.documentElement.className = "";
-    const page = new Page(scene);
+    const page = (window.page = new Page(scene));
     $("message").textContent = "";
     if (!page.viewer) {
       document.documentElement.className = "still data";

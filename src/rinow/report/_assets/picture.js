@@ -1,12 +1,10 @@
 "use strict";
 // The present view with title and legend, as a picture to save or to print.
 
-/** A canvas with the view of a page, its title and its legend, in the colours of the screen. */
-function pictureOf(page) {
+/** A canvas with the view of a page, its title and its legend, on paper of a colour; by default as the screen. */
+function pictureOf(page, { paper, ink } = screenColours()) {
   const view = page.viewer.snapshot();
   const scale = view.width / view.clientWidth;
-  const style = getComputedStyle(document.documentElement);
-  const [paper, ink] = ["--card", "--ink"].map((name) => style.getPropertyValue(name));
   const picture = document.createElement("canvas");
   const [head, foot] = [44 * scale, 84 * scale];
   picture.width = view.width;
@@ -27,6 +25,11 @@ function pictureOf(page) {
   return picture;
 }
 
+function screenColours() {
+  const style = getComputedStyle(document.documentElement);
+  return { paper: style.getPropertyValue("--card"), ink: style.getPropertyValue("--ink") };
+}
+
 function drawBar(pen, page, { top, scale, font, ink }) {
   const { field, low, high } = page;
   const wide = Math.min(460 * scale, pen.canvas.width - 80 * scale);
@@ -35,7 +38,7 @@ function drawBar(pen, page, { top, scale, font, ink }) {
   pen.font = font(12.5);
   const sign = field.signed ? ", convex positive" : "";
   const unit = field.unit && field.unit !== "1" ? `, in ${field.unit}` : "";
-  const grey = field.categories ? "" : "; grey: undefined";
+  const grey = !field.categories && page.undefinedVertices > 0 ? "; grey: undefined" : "";
   pen.fillText(`${field.title}${unit}${sign}${grey}`, pen.canvas.width / 2, top + 12 * scale);
   if (field.categories) return drawKeys(pen, page, { top, scale, font, ink });
   for (let i = 0; i < 256; i++) {

@@ -2,6 +2,7 @@
 // The surface in three dimensions: drawing, moving, and which vertex is under the pointer.
 
 const HALF_DIAGONAL = 0.9; // of the unit cube, and a little more
+const MARGIN = 1.12; // around the surface at first
 const UP = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
 class Viewer {
@@ -150,14 +151,20 @@ class Viewer {
     this.draw();
   }
 
-  /** Far enough to see all of the surface. */
+  /** Distance from which all of the surface is seen in the present direction. */
   distance() {
-    let reach = 0;
+    const towards = this.camera.position.clone().normalize();
+    const right = new THREE.Vector3().crossVectors(this.camera.up, towards).normalize();
+    const above = new THREE.Vector3().crossVectors(towards, right);
+    const slope = Math.tan((this.camera.fov * Math.PI) / 360);
+    const place = new THREE.Vector3();
+    let distance = 0;
     for (let i = 0; i < this.places.length; i += 3) {
-      reach = Math.max(reach, Math.hypot(this.places[i], this.places[i + 1], this.places[i + 2]));
+      place.fromArray(this.places, i);
+      const reach = Math.max(Math.abs(place.dot(above)), Math.abs(place.dot(right)) / this.camera.aspect);
+      distance = Math.max(distance, place.dot(towards) + (MARGIN * reach) / slope);
     }
-    const half = (this.camera.fov * Math.PI) / 360;
-    return ((reach || 1) * 1.02) / Math.sin(half) / Math.min(1, this.camera.aspect);
+    return distance || 1;
   }
 
   /** Turn by angles about the up axis and towards it, as with the arrow keys. */
@@ -176,11 +183,13 @@ class Viewer {
     this.controls.update();
   }
 
-  /** Bring a vertex to the middle of the view. */
+  /** Look at a vertex from outside. */
   centre(vertex) {
-    const place = new THREE.Vector3(...this.placeOf(vertex));
-    this.camera.position.add(place).sub(this.controls.target);
-    this.controls.target.copy(place);
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    const normal = new THREE.Vector3().fromArray(this.surface.geometry.attributes.smoothNormal.array, 4 * vertex);
+    if (normal.length() === 0) normal.copy(this.camera.position).sub(this.controls.target);
+    this.controls.target.fromArray(this.places, 3 * vertex);
+    this.camera.position.copy(this.controls.target).addScaledVector(normal.normalize(), distance);
     this.controls.update();
   }
 
