@@ -218,6 +218,16 @@ def test_a_method_that_knows_gaussian_curvature_only():
     assert "direction1" not in [a["name"] for a in scene.header["arrays"]]
 
 
+@pytest.mark.parametrize("scale", [1e-100, 1e100])
+def test_any_unit_of_length(scale):
+    mesh = faulty_mesh()
+    study = study_of(rinow.TriangleMesh(scale * mesh.vertices, mesh.faces))
+    scene = surface_scene(study)
+    gaussian = decoded(scene.header, scene.data)["gaussian"]
+    np.testing.assert_array_equal(gaussian, study.curvature.gaussian)
+    Reader(surface_page(study, title="far"))
+
+
 def test_a_mesh_without_any_finite_position():
     mesh = rinow.TriangleMesh(np.full((3, 3), np.nan), [[0, 1, 2]])
     study = study_surface(mesh, method="angle_defect")
@@ -234,12 +244,13 @@ def folder(tmp_path, monkeypatch):
 
 
 def test_the_command_writes_a_report(folder, capsys):
-    assert main(["curvature", "in.ply", "--quality", "fast", "--report", "out.html", "--json"]) == 0
+    assert main(["curvature", "in.ply", "--quality", "fast", "--field", "k1", "--report", "out.html", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["outputs"] == ["out.html"]
     reader = Reader((folder / "out.html").read_text(encoding="utf-8"))
     assert reader.texts("h1") == ["in.ply"]
-    assert json.loads(reader.by_id("scene-header")[2])["vertices"] == faulty_mesh().n_vertices
-    assert "corners" in [a["name"] for a in json.loads(reader.by_id("scene-header")[2])["arrays"]]
+    header = json.loads(reader.by_id("scene-header")[2])
+    assert (header["vertices"], header["field"]) == (faulty_mesh().n_vertices, "k1")
+    assert "corners" in [array["name"] for array in header["arrays"]]
 
 
 @pytest.mark.parametrize("report", ["out.png", "missing/out.html", "in.ply"])

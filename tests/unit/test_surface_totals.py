@@ -43,3 +43,12 @@ def test_curves_of_the_boundary_are_counted(shape, curves, components):
     totals = surface_totals(mesh, np.zeros(mesh.n_vertices))
     assert (totals.boundary_curves, totals.components) == (curves, components)
     assert totals.inner_defects + totals.boundary_turning == pytest.approx(2 * np.pi * totals.euler_characteristic)
+
+
+def test_separate_triangles_are_welded():
+    joined, apart = mesh_of(shapes.icosphere(2)), mesh_of(shapes.soup(shapes.icosphere(2)))
+    expected = surface_totals(joined, np.ones(joined.n_vertices))
+    actual = surface_totals(apart, np.ones(apart.n_vertices))
+    assert actual.euler_characteristic == 2
+    assert actual.boundary_edges == 0
+    assert actual.gaussian_integral == pytest.approx(expected.gaussian_integral)

@@ -53,7 +53,7 @@ def curvature(
     radius
         Scale in the unit of length of the file; by default each method chooses its own.
     field
-        The scalar that becomes `quality` in PLY, and is drawn.
+        The scalar that becomes `quality` in PLY, and is drawn, in the report at first.
     picture
         PNG file to draw four views to.
     report
@@ -88,7 +88,7 @@ def curvature(
                 write_picture(picture, study, field, title=mesh.name, up=up)
         if report:
             with working(f"writing {report.name}"):
-                write_report(report, study, features, title=mesh.name, up=up)
+                write_report(report, study, features, field=field, title=mesh.name, up=up)
     if json:
         print_json(_record(mesh, study, field, outputs, notes))
     else:
@@ -115,12 +115,20 @@ def write_picture(path: Path, study: SurfaceStudy, field: str, *, title: str, up
         write_surface_picture(temporary, figure)
 
 
-def write_report(path: Path, study: SurfaceStudy, features: FeatureStudy | None = None, *, title: str, up: str) -> None:
+def write_report(
+    path: Path,
+    study: SurfaceStudy,
+    features: FeatureStudy | None = None,
+    *,
+    field: str = "gaussian",
+    title: str,
+    up: str,
+) -> None:
     """Write a page that shows a study, to an HTML file."""
     from rinow.io.atomic import replacing
     from rinow.report.page import surface_page, write_surface_page
 
-    page = surface_page(study, features, title=title, up=up)
+    page = surface_page(study, features, title=title, field=field, up=up)
     with replacing(path) as temporary:
         write_surface_page(temporary, page)
 

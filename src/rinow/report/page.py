@@ -18,7 +18,7 @@ from rinow.report.figures import surface_figure
 from rinow.report.scene import surface_scene
 from rinow.report.sections import sections
 from rinow.study.features import FeatureStudy
-from rinow.study.surface import FIELDS, SurfaceStudy, field_unit
+from rinow.study.surface import FIELDS, SIGNED, SurfaceStudy, field_unit
 
 __all__ = ["surface_page", "write_surface_page"]
 
@@ -42,6 +42,7 @@ def surface_page(
     features: FeatureStudy | None = None,
     *,
     title: str,
+    field: str = "gaussian",
     up: str = "z",
     made: datetime | None = None,
 ) -> str:
@@ -55,6 +56,8 @@ def surface_page(
         Singular points of the same surface, drawn on demand.
     title : str
         Heading, such as the name of the file.
+    field : str
+        Name of the scalar that is shown at first.
     up : {"x", "y", "z"}
         Axis that points up at first.
     made : datetime, optional
@@ -77,7 +80,10 @@ def surface_page(
     (True, True)
     """
     mesh = study.mesh
-    scene = surface_scene(study, features, up=up)
+    scene = surface_scene(study, features, field=field, up=up)
+    label = f"{FIELDS[field][0]}, in {field_unit(field, study.unit)}"
+    if field in SIGNED:
+        label += ", convex positive"
     style, scripts = _asset("page.css"), [_asset(name) for name in SCRIPTS]
     summary = f"{mesh.n_vertices:,} vertices, {mesh.n_faces:,} faces, method {study.curvature.method}"
     time = (made or datetime.now(UTC)).strftime("%Y-%m-%d %H:%M %Z").strip()
@@ -86,8 +92,8 @@ def surface_page(
         version=__version__,
         title=escape(title),
         summary=summary,
-        picture=_still_picture(study, up),
-        picture_text=escape(f"Four views coloured by the {FIELDS['gaussian'][0]}, in {_unit(study)}, convex positive"),
+        picture=_still_picture(study, field, label, up),
+        picture_text=escape(f"Four views coloured by the {label}"),
         style=style,
         sections=sections(study, features, version=__version__, made=time),
         footer=f"Made by rinow {__version__}, {time}.  This page is complete in itself and asks no network.",
@@ -128,15 +134,10 @@ def _json(value: Any) -> str:
     return json.dumps(value, allow_nan=False, ensure_ascii=False).replace("<", "\\u003c")
 
 
-def _unit(study: SurfaceStudy) -> str:
-    return field_unit("gaussian", study.unit)
-
-
-def _still_picture(study: SurfaceStudy, up: str) -> str:
+def _still_picture(study: SurfaceStudy, field: str, label: str, up: str) -> str:
     """The picture for printers and for browsers without WebGL, as an address that holds it."""
-    mesh = study.mesh
-    label = f"{FIELDS['gaussian'][0]}, in {_unit(study)}, convex positive"
-    figure = surface_figure(mesh.vertices, mesh.faces, study.curvature.gaussian, label=label, up=up)
+    mesh, values = study.mesh, study.fields(field)[field]
+    figure = surface_figure(mesh.vertices, mesh.faces, values, label=label, signed=field in SIGNED, up=up)
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=PICTURE_DPI)
     return f"data:image/png;base64,{base64.b64encode(buffer.getvalue()).decode('ascii')}"

@@ -53,7 +53,9 @@ class Scene:
     data: str
 
 
-def surface_scene(study: SurfaceStudy, features: FeatureStudy | None = None, *, up: str = "z") -> Scene:
+def surface_scene(
+    study: SurfaceStudy, features: FeatureStudy | None = None, *, field: str = "gaussian", up: str = "z"
+) -> Scene:
     """Pack a surface, its curvature and its singular points for a page.
 
     Parameters
@@ -62,6 +64,8 @@ def surface_scene(study: SurfaceStudy, features: FeatureStudy | None = None, *, 
         Surface and curvature.
     features : FeatureStudy, optional
         Singular points of the same surface.
+    field : str
+        Name of the scalar that is shown at first.
     up : {"x", "y", "z"}
         Axis that points up at first.
 
@@ -79,7 +83,7 @@ def surface_scene(study: SurfaceStudy, features: FeatureStudy | None = None, *, 
     step = extent / POSITION_STEPS if extent > 0.0 else 1.0
     shown = mesh.vertex_is_finite[mesh.faces].all(axis=1)
     positions = np.rint((np.where(mesh.vertex_is_finite[:, None], mesh.vertices, origin) - origin) / step)
-    fields = study.fields()
+    fields = study.fields(field)
     arrays: dict[str, NDArray[Any]] = {
         "positions": positions.astype(np.uint32),
         "faces": mesh.faces[shown].astype(np.uint32),
@@ -97,6 +101,7 @@ def surface_scene(study: SurfaceStudy, features: FeatureStudy | None = None, *, 
         "precision": 2.0**-BITS_OF_LARGE if mesh.n_vertices >= LARGE else 2.0**-24,
         "origin": origin.tolist(),
         "step": step,
+        "field": field,
         "up": up,
         "unit": study.unit,
         "undefined": [round(255 * c) for c in UNDEFINED_GREY],

@@ -69,7 +69,7 @@ def _totals(study: SurfaceStudy) -> str:
         ("area", totals.area, f"{unit}²"),
         ("Euler characteristic χ", totals.euler_characteristic, ""),
         ("components", totals.components, ""),
-        ("boundary curves", totals.boundary_curves, f"{counts['boundary_edges']:,} edges"),
+        ("boundary curves", totals.boundary_curves, f"{totals.boundary_edges:,} edges"),
         ("2πχ", 2.0 * math.pi * totals.euler_characteristic, "rad"),
         ("total curvature, by angle defects", totals.inner_defects, "rad"),
         ("turning of the boundary", totals.boundary_turning, "rad"),

@@ -26,6 +26,8 @@ class SurfaceTotals:
         Vertices minus edges plus faces.
     components : int
         Connected components of the surface.
+    boundary_edges : int
+        Edges with one face.
     boundary_curves : int
         Connected components of the boundary; a boundary that touches itself counts once.
     inner_defects : float
@@ -41,6 +43,7 @@ class SurfaceTotals:
     area: float
     euler_characteristic: int
     components: int
+    boundary_edges: int
     boundary_curves: int
     inner_defects: float
     boundary_turning: float
@@ -54,7 +57,7 @@ def surface_totals(mesh: TriangleMesh, gaussian: NDArray[np.float64]) -> Surface
     Parameters
     ----------
     mesh : TriangleMesh
-        The surface.
+        The surface; one of separate triangles is welded, as for its curvature.
     gaussian : (n_vertices,) ndarray of float
         Gaussian curvature at its vertices, in 1/length²; nan where undefined.
 
@@ -72,6 +75,10 @@ def surface_totals(mesh: TriangleMesh, gaussian: NDArray[np.float64]) -> Surface
     >>> totals.area, totals.boundary_curves, round(totals.boundary_turning / np.pi, 12)
     (1.0, 1, 2.0)
     """
+    if mesh.is_soup:
+        mesh, vertex_map = mesh.welded()
+        values, gaussian = gaussian, np.full(mesh.n_vertices, np.nan)
+        gaussian[vertex_map] = values
     topology, defects = mesh.topology, mesh.vertex_angle_defects
     on_boundary = topology.vertex_is_boundary
     known = np.isfinite(gaussian)
@@ -79,6 +86,7 @@ def surface_totals(mesh: TriangleMesh, gaussian: NDArray[np.float64]) -> Surface
         area=float(mesh.face_areas[topology.face_used].sum()),
         euler_characteristic=topology.euler_characteristic,
         components=topology.n_components,
+        boundary_edges=int(topology.edge_is_boundary.sum()),
         boundary_curves=_boundary_curves(mesh),
         inner_defects=float(defects[~on_boundary].sum()),
         boundary_turning=float(defects[on_boundary].sum()),

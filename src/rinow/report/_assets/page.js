@@ -76,7 +76,7 @@ class Page {
   followAddress() {
     const wish = new URLSearchParams(location.hash.slice(1));
     this.reset(wish.get("up") in UP ? wish.get("up") : this.scene.up);
-    this.choose(this.fields.has(wish.get("field")) ? wish.get("field") : "gaussian");
+    this.choose(this.fields.has(wish.get("field")) ? wish.get("field") : this.scene.field);
     const [low, high] = [wish.get("low"), wish.get("high")].map((text) => (text === null ? NaN : Number(text)));
     if (low < high) this.setRange(low, high);
     for (const name of LAYERS) if (wish.has(name)) this.show(name, wish.get(name) === "1");
@@ -200,6 +200,7 @@ class Page {
     $("vertex").value = vertex >= 0 ? vertex : "";
     $("vertex-clear").hidden = vertex < 0;
     $("vertex").removeAttribute("aria-invalid");
+    $("readout").setAttribute("aria-live", vertex >= 0 ? "polite" : "off");
     this.viewer?.mark(vertex);
     this.showVertex(vertex);
   }
