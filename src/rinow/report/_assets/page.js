@@ -185,7 +185,7 @@ class Page {
     $("tip").hidden = vertex < 0;
     if (vertex >= 0) {
       const f = this.field;
-      const value = f.categories ? f.categories[f.values[vertex]] : `${written(f.values[vertex], 5)} ${f.unit === "1" ? "" : f.unit}`;
+      const value = f.categories ? f.categories[f.values[vertex]] : `${short(f.values[vertex])} ${f.unit === "1" ? "" : f.unit}`;
       $("tip").textContent = `vertex ${vertex}\n${SHORT_NAMES[f.name] ?? f.name} ${value}`;
       const x = Math.min(at.offsetX + 16, $("view").clientWidth - $("tip").offsetWidth - 6);
       const y = at.offsetY > $("view").clientHeight - 80 ? at.offsetY - 58 : at.offsetY + 14;
@@ -219,7 +219,7 @@ class Page {
     const { arrays, statuses, origin, step, unit } = this.scene;
     const code = arrays.status[vertex];
     const [name, meaning] = Object.entries(statuses)[code];
-    const digits = Math.max(5, -Math.round(Math.log10(this.scene.precision)));
+    const digits = Math.round(-Math.log10(this.scene.precision));
     const decimals = Math.ceil(-Math.log10(step));
     const place = [0, 1, 2].map((c) => {
       const x = origin[c] + step * arrays.positions[3 * vertex + c];
