@@ -76,11 +76,12 @@ def _totals(study: SurfaceStudy) -> str:
         (f"sum of K times area{known}", totals.gaussian_integral, "rad"),
         *faults,
     ]
+    cells = [(escape(a), number(round(b, 9) + 0.0 if c == "rad" else b), escape(c)) for a, b, c in rows]
     text = (
         "Gauss and Bonnet: curvature and turning add up to 2πχ.  The sum of K times area has what smooth parts "
         "contribute; edges and corners of parts and noise make it differ."
     )
-    return _section("Totals", _table([], [(escape(a), number(b), escape(c)) for a, b, c in rows], numbers=(1,)), text)
+    return _section("Totals", _table([], cells, numbers=(1,)), text)
 
 
 def _statuses(study: SurfaceStudy) -> str:
@@ -110,7 +111,7 @@ def _origin(study: SurfaceStudy, version: str, made: str) -> str:
         ("rinow", version),
         ("method", used if wish == used else f"{used} (asked for: {wish})"),
         ("quality", str(asked.get("quality", "best"))),
-        ("radius", "chosen at each place from the data" if radius is None else f"{number(float(radius))} {study.unit}"),
+        ("radius", "the choice of the method" if radius is None else f"{number(float(radius))} {study.unit}"),
         ("unit of length", study.unit),
         ("time", ", ".join(f"{step} {seconds:.2f} s" for step, seconds in study.seconds.items())),
         ("page made", made),

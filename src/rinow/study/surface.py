@@ -69,7 +69,7 @@ class SurfaceStudy:
     seconds : dict of str to float
         Wall time of each step.
     settings : dict of str to str or float or None
-        What was asked for: method, quality, radius (None: chosen from the data).
+        What was asked for: method, quality, radius (None: the choice of the method).
     """
 
     mesh: TriangleMesh

@@ -112,7 +112,7 @@ function label(x, y, text, anchor) {
 
 function percent(share) {
   if (share === 0) return "0 %";
-  return share < 0.001 ? "< 0.1 %" : `${(100 * share).toFixed(1)} %`;
+  return share < 0.001 ? "under 0.1 %" : `${(100 * share).toFixed(1)} %`;
 }
 
 /** A number in four digits with a true minus sign. */
