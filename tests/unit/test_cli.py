@@ -32,12 +32,13 @@ def ascii_ply(vertices, faces):
     )
 
 
-def test_demo_writes_a_mesh_and_a_picture(folder, capsys):
+def test_demo_writes_a_mesh_a_picture_and_a_page(folder, capsys):
     assert main(["demo"]) == 0
     mesh = rinow.read_mesh("rinow-demo.ply")
     assert mesh.n_vertices == 2930
     assert np.isfinite(mesh.vertex_data["quality"]).all()
     assert (folder / "rinow-demo.png").read_bytes().startswith(b"\x89PNG")
+    assert (folder / "rinow-demo.html").read_text(encoding="utf-8").startswith("<!doctype html>")
     out = capsys.readouterr()
     assert "gaussian" in out.out
     assert "1/length²" in out.out

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rinow.report.figures import colour_limit, surface_figure
+from rinow.report.figures import colour_limit, colour_scale, surface_figure
 from rinow.report.raster import camera, rasterize
 
 
@@ -54,6 +54,15 @@ def test_colours_are_symmetric_and_clipped():
     assert colour_limit(values) == pytest.approx(2.0, rel=0.05)
     assert colour_limit(np.array([np.nan])) == 1.0
     assert colour_limit(np.zeros(4)) == 1.0
+
+
+def test_colours_of_fields_that_are_never_negative_go_from_percentile_to_percentile():
+    scale = colour_scale(np.append(np.linspace(1, 2, 101), [np.nan, 50.0]), signed=False)
+    assert (scale.low, scale.high) == pytest.approx((1.02, 1.98), abs=0.02)
+    for values in (np.full(3, 7.0), np.zeros(3), np.array([np.nan])):
+        scale = colour_scale(values, signed=False)
+        assert scale.low < scale.high
+    assert colour_scale(np.array([-3.0, 1.0]), signed=True).low == -colour_limit(np.array([-3.0, 1.0]))
 
 
 def test_figure_with_undefined_values_and_positions():

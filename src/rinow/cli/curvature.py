@@ -11,9 +11,10 @@ from cyclopts import Parameter
 from rinow._version import __version__
 from rinow.cli._terminal import print_json, print_notes, print_study, working
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
-from rinow.study.surface import PERCENTILES, SIGN, SurfaceStudy, field_unit, mesh_counts, study_surface
+from rinow.study.features import FeatureStudy, study_features
+from rinow.study.surface import PERCENTILES, SIGN, SIGNED, SurfaceStudy, field_unit, mesh_counts, study_surface
 
-__all__ = ["curvature", "write_picture"]
+__all__ = ["curvature", "write_picture", "write_report"]
 
 Field = Literal["gaussian", "mean", "k1", "k2", "shape_index", "curvedness", "spread"]
 Method = Literal["auto", "sectional", "lifted", "intrinsic", "wald", "robinson", "angle_defect"]
@@ -30,6 +31,7 @@ def curvature(
     radius: float | None = None,
     field: Field = "gaussian",
     picture: Path | None = None,
+    report: Path | None = None,
     up: Literal["x", "y", "z"] = "z",
     unit: str = "length",
     json: bool = False,
@@ -51,21 +53,29 @@ def curvature(
     radius
         Scale in the unit of length of the file; by default each method chooses its own.
     field
-        The scalar that becomes `quality` in PLY, and is drawn.
+        The scalar that becomes `quality` in PLY, and is drawn, in the report at first.
     picture
         PNG file to draw four views to.
+    report
+        HTML file to make: the surface and all fields, to turn and to read off in a browser, without a network.
     up
-        Axis that points up in the picture.
+        Axis that points up in the picture and in the report.
     unit
         Name of the unit of length of the file, such as mm.
     json
         Print one JSON object instead of a table.
     """
-    check_outputs([*output, *([picture] if picture else [])], inputs=[mesh], pictures=[picture] if picture else [])
+    pictures, pages = [picture] if picture else [], [report] if report else []
+    outputs = [*output, *pictures, *pages]
+    check_outputs(outputs, inputs=[mesh], pictures=pictures, pages=pages)
     with working(f"reading {mesh.name}"):
         surface = read_mesh(mesh)
     with working(f"curvature of {surface.n_vertices:,} vertices") as progress:
         study = study_surface(surface, method=method, quality=quality, radius=radius, unit=unit, progress=progress)
+    features = None
+    if report:
+        with working(f"creases and corners of {surface.n_vertices:,} vertices"), study.timed("features"):
+            features = study_features(surface)
     notes: list[str] = []
     if not np.isfinite(study.fields(field)[field]).any():
         notes.append(f"{field} is undefined at every vertex: method {method} gives none on this mesh.")
@@ -76,8 +86,11 @@ def curvature(
         if picture:
             with working(f"drawing {picture.name}"):
                 write_picture(picture, study, field, title=mesh.name, up=up)
+        if report:
+            with working(f"writing {report.name}"):
+                write_report(report, study, features, field=field, title=mesh.name, up=up)
     if json:
-        print_json(_record(mesh, study, field, [*output, *([picture] if picture else [])], notes))
+        print_json(_record(mesh, study, field, outputs, notes))
     else:
         print_study(str(mesh), study)
         print_notes(tuple(notes))
@@ -94,11 +107,30 @@ def write_picture(path: Path, study: SurfaceStudy, field: str, *, title: str, up
         study.mesh.faces,
         study.fields(field)[field],
         label=label,
+        signed=field in SIGNED,
         up=up,
         title=f"{title}: {study.mesh.n_vertices:,} vertices, method {study.curvature.method}",
     )
     with replacing(path) as temporary:
         write_surface_picture(temporary, figure)
+
+
+def write_report(
+    path: Path,
+    study: SurfaceStudy,
+    features: FeatureStudy | None = None,
+    *,
+    field: str = "gaussian",
+    title: str,
+    up: str,
+) -> None:
+    """Write a page that shows a study, to an HTML file."""
+    from rinow.io.atomic import replacing
+    from rinow.report.page import surface_page, write_surface_page
+
+    page = surface_page(study, features, title=title, field=field, up=up)
+    with replacing(path) as temporary:
+        write_surface_page(temporary, page)
 
 
 def _record(mesh: Path, study: SurfaceStudy, field: str, outputs: list[Path], notes: list[str]) -> dict[str, object]:

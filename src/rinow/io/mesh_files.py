@@ -194,7 +194,11 @@ def write_mesh(
 
 
 def check_outputs(
-    outputs: Iterable[PathLike], *, inputs: Iterable[PathLike] = (), pictures: Iterable[PathLike] = ()
+    outputs: Iterable[PathLike],
+    *,
+    inputs: Iterable[PathLike] = (),
+    pictures: Iterable[PathLike] = (),
+    pages: Iterable[PathLike] = (),
 ) -> None:
     """Refuse output files that could not be written later, before any work is done.
 
@@ -206,14 +210,18 @@ def check_outputs(
         Files to be read; none of them is overwritten.
     pictures : paths, optional
         Those outputs that are pictures, not meshes.
+    pages : paths, optional
+        Those outputs that are pages for a browser.
 
     Raises
     ------
     FileFormatError
-        If an output is an input, occurs twice, has a wrong suffix (pictures: .png), or cannot be made where it is.
+        If an output is an input, occurs twice, has a wrong suffix (pictures: .png, pages: .html), or cannot be
+        made where it is.
     """
     sources = {os.path.realpath(path) for path in inputs}
-    images = {os.path.realpath(path) for path in pictures}
+    suffixes = {os.path.realpath(path): (".png", "pictures") for path in pictures}
+    suffixes |= {os.path.realpath(path): (".html", "reports") for path in pages}
     seen: set[str] = set()
     for output in outputs:
         place = os.path.realpath(output)
@@ -222,10 +230,11 @@ def check_outputs(
         if place in seen:
             raise FileFormatError(f"{output} is named twice as an output; choose another name.")
         seen.add(place)
-        if place not in images:
+        suffix, kind = suffixes.get(place, ("", "meshes"))
+        if kind == "meshes":
             _format_of(Path(output))
-        elif not place.lower().endswith(".png"):
-            raise FileFormatError(f"{output} has not the suffix .png, the one format of pictures; choose another name.")
+        elif not place.lower().endswith(suffix):
+            raise FileFormatError(f"{output} has not the suffix {suffix}, the one of {kind}; choose another name.")
         check_target(output)
 
 

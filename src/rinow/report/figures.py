@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from rinow.report.raster import camera, shade
 
-__all__ = ["colour_limit", "surface_figure", "write_surface_picture"]
+__all__ = ["UNDEFINED_GREY", "ColourScale", "colour_limit", "colour_scale", "surface_figure", "write_surface_picture"]
 
 Floats = NDArray[np.float64]
 UNDEFINED_GREY = (0.35, 0.35, 0.35)
@@ -26,10 +27,50 @@ def colour_limit(values: Floats) -> float:
     return limit if limit > 0.0 else 1.0
 
 
+@dataclass(frozen=True, slots=True)
+class ColourScale:
+    """Which values have which colours.
+
+    Attributes
+    ----------
+    low, high : float
+        Values of the first and the last colour; those beyond have the same.
+    colour_map : str
+        Name of the map in matplotlib.
+    rule : str
+        How the range was chosen, in words.
+    """
+
+    low: float
+    high: float
+    colour_map: str
+    rule: str
+
+
+def colour_scale(values: Floats, *, signed: bool = True) -> ColourScale:
+    """Colours of a field: symmetric about 0 for a signed one, else from the 2nd to the 98th percentile."""
+    rule = "colours clipped at the 2nd and 98th percentile"
+    if signed:
+        limit = colour_limit(values)
+        return ColourScale(-limit, limit, "RdBu_r", f"{rule}, symmetric about 0")
+    finite = values[np.isfinite(values)]
+    low, high = (float(x) for x in np.percentile(finite, CLIP_PERCENTILES)) if len(finite) else (0.0, 1.0)
+    if not low < high:
+        low, high = (0.0, 2.0 * low) if low > 0.0 else (0.0, 1.0)
+    return ColourScale(low, high, "viridis", rule)
+
+
 def surface_figure(
-    vertices: Floats, faces: NDArray[np.intp], values: Floats, *, label: str, title: str = "", up: str = "z"
+    vertices: Floats,
+    faces: NDArray[np.intp],
+    values: Floats,
+    *,
+    label: str,
+    signed: bool = True,
+    title: str = "",
+    up: str = "z",
 ) -> Any:
-    """Four views around a surface, coloured by a signed field.
+    """Four views around a surface, coloured by a field.
 
     Parameters
     ----------
@@ -41,6 +82,8 @@ def surface_figure(
         The field; blue is negative, red positive, grey undefined (nan).
     label : str
         Name and unit of the field, for the colour bar.
+    signed : bool, optional
+        Whether the field may be negative; one that never is goes from violet to yellow.
     title : str, optional
         Heading.
     up : {"x", "y", "z"}
@@ -55,9 +98,9 @@ def surface_figure(
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
-    limit = colour_limit(values)
-    scale = ScalarMappable(Normalize(-limit, limit), "RdBu_r")
-    colours = scale.to_rgba(np.nan_to_num(values, nan=0.0, posinf=limit, neginf=-limit))[:, :3]
+    chosen = colour_scale(values, signed=signed)
+    scale = ScalarMappable(Normalize(chosen.low, chosen.high), chosen.colour_map)
+    colours = scale.to_rgba(np.nan_to_num(values, nan=0.0, posinf=chosen.high, neginf=chosen.low))[:, :3]
     colours[np.isnan(values)] = UNDEFINED_GREY
     figure = Figure(figsize=(9.4, 8.2), dpi=140, layout="constrained")
     axes = figure.subplots(2, 2)
@@ -67,7 +110,7 @@ def surface_figure(
     bar = figure.colorbar(scale, ax=axes, extend="both", shrink=0.75, aspect=32, pad=0.02)
     undefined = int(np.isnan(values).sum())
     grey = f"; grey: undefined at {undefined:,} of {len(values):,} vertices" if undefined else ""
-    bar.set_label(f"{label}\ncolours clipped at the 2nd and 98th percentile, symmetric about 0{grey}", fontsize=9)
+    bar.set_label(f"{label}\n{chosen.rule}{grey}", fontsize=9)
     if title:
         figure.suptitle(title, fontsize=12)
     return figure

@@ -154,7 +154,7 @@ def shade(
     corners = faces[face[hit]]
     picture = np.zeros((n, n, 4))
     picture[hit, :3] = np.einsum("ij,ijk->ik", weights[hit], colours[corners])
-    a, b, c = (seen[corners[:, k]] for k in range(3))
+    a, b, c = (zoom * seen[corners[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
     length = np.linalg.norm(normal, axis=1)
     facing = np.abs(normal[:, 2]) / np.where(length == 0.0, 1.0, length)

@@ -15,7 +15,7 @@ from rinow.curvature.status import VertexStatus
 from rinow.curvature.surface import SurfaceCurvature, surface_curvature
 from rinow.mesh import TriangleMesh
 
-__all__ = ["FIELDS", "SurfaceStudy", "mesh_counts", "study_surface"]
+__all__ = ["FIELDS", "SIGNED", "STATUSES", "SurfaceStudy", "mesh_counts", "study_surface"]
 
 Floats = NDArray[np.float64]
 
@@ -30,6 +30,19 @@ FIELDS: Mapping[str, tuple[str, int]] = {
     "radius": ("radius used", 1),
 }
 """Scalar fields of a curvature result: name in words and power of the unit of length."""
+
+SIGNED = ("gaussian", "mean", "k1", "k2", "shape_index")
+"""Fields whose sign tells convex from concave; the others are never negative."""
+STATUSES: Mapping[str, str] = {
+    "OK": "the value is defined and finite",
+    "BOUNDARY": "a one-sided estimate at a boundary or crease, or nan where the method has none",
+    "ISOLATED": "nan: no face has the vertex",
+    "DEGENERATE": "nan: every face around the vertex is degenerate",
+    "NONMANIFOLD": "the faces around the vertex are not one fan; a value where the method has one",
+    "NONFINITE": "nan: the position is nan or inf",
+    "UNRESOLVED": "nan: the data around the vertex determine no value",
+}
+"""What each name of `VertexStatus` means, in the order of the codes."""
 
 PERCENTILES = (0, 2, 25, 50, 75, 98, 100)
 SIGN = "convex with outward normal is positive; mean curvature is (k1 + k2)/2"
@@ -55,12 +68,15 @@ class SurfaceStudy:
         Name of the unit of length; "length" when nobody said.
     seconds : dict of str to float
         Wall time of each step.
+    settings : dict of str to str or float or None
+        What was asked for: method, quality, radius (None: the choice of the method).
     """
 
     mesh: TriangleMesh
     curvature: SurfaceCurvature
     unit: str = "length"
     seconds: dict[str, float] = field(default_factory=dict)
+    settings: dict[str, str | float | None] = field(default_factory=dict)
 
     @contextmanager
     def timed(self, step: str) -> Generator[None]:
@@ -92,7 +108,7 @@ class SurfaceStudy:
         """Name, unit and sign of each field, in words."""
         text = {name: f"{FIELDS[name][0]}, unit {field_unit(name, self.unit)}" for name in FIELDS}
         codes = ", ".join(f"{s.value} {s.name}" for s in VertexStatus)
-        signed = {name: f"{text[name]}, {SIGN}" for name in ("gaussian", "mean", "k1", "k2")}
+        signed = {name: f"{text[name]}, {SIGN}" for name in SIGNED}
         directions = {f"direction{i}": f"unit direction of k{i}" for i in (1, 2)}
         return {**text, **signed, **directions, "status": f"status of the vertex: {codes}"}
 
@@ -157,4 +173,5 @@ def study_surface(
     """
     start = time.perf_counter()
     curvature = surface_curvature(mesh, method=method, quality=quality, radius=radius, progress=progress)
-    return SurfaceStudy(mesh, curvature, unit, {"curvature": time.perf_counter() - start})
+    seconds = {"curvature": time.perf_counter() - start}
+    return SurfaceStudy(mesh, curvature, unit, seconds, {"method": method, "quality": quality, "radius": radius})
