@@ -132,6 +132,13 @@ def test_ring_jets_equal_orthogonalised_least_squares_over_the_plane_of_a_first_
         np.testing.assert_allclose(out[v], expected, rtol=1e-8)
 
 
+def test_too_few_points_for_a_cubic_leave_no_ring_jet():
+    for shape, is_known in ((shapes.tetrahedron(), False), (shapes.icosphere(0), False), (shapes.icosphere(1), True)):
+        out = np.empty((len(shape.vertices), 2, 2))
+        ring_jets.ring_jets(stencil_surface(TriangleMesh(shape.vertices, shape.faces)), 4, out)
+        assert (np.isfinite(out) == is_known).all()
+
+
 @pytest.mark.parametrize("seed", range(40, 48))
 def test_shape_operator_of_a_graph(seed):
     f1, f2, f11, f12, f22 = np.random.default_rng(seed).normal(size=5).tolist()

@@ -18,9 +18,9 @@ __all__ = ["single_rings", "with_detail"]
 
 Floats = NDArray[np.float64]
 
-NOISY = 0.002
+NOISY = 0.001
 """Noise of the positions, over the spacing, below which fits have resolved everything."""
-OF_FITS, OF_CUBICS, OF_QUARTICS = (0.05, 0.3), (-0.1, 0.1), (0.1, 0.3)
+OF_FITS, OF_CUBICS, OF_QUARTICS = (0.0, 0.2), (-0.1, 0.1), (0.1, 0.3)
 """Correlations of neighbours up to which a difference is noise, and from which detail: of quadrics from fits, of single
 rings from cubics, of quartics from cubics.  White noise has -0.14, -0.25 and -0.1."""
 LEFT = (0.2, 0.1)
