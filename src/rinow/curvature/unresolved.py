@@ -89,7 +89,8 @@ def _with_detail_of_rings(mesh: TriangleMesh, star: Estimate, spacing: Floats) -
     values += _times(of_quartic, quartic - values)
     values = np.where(np.isfinite(values), values, np.stack((star.gaussian, star.mean), axis=1))  # type: ignore[arg-type]
     gaussian, mean = np.ascontiguousarray(values.T)
-    return replace(star, gaussian=gaussian, mean=mean, spread=ring_deviations(mesh, gaussian))
+    spread, radius = ring_deviations(mesh, gaussian), ring_jets.N_RINGS * star.radius
+    return replace(star, gaussian=gaussian, mean=mean, spread=spread, radius=radius)
 
 
 def single_rings(mesh: TriangleMesh) -> Floats:
@@ -107,9 +108,10 @@ def single_rings(mesh: TriangleMesh) -> Floats:
     bends = EdgeTurnings(mesh).turnings * np.linalg.norm(np.subtract(*mesh.vertices[edges.T]), axis=1)
     total = 0.25 * np.bincount(edges.ravel(), np.repeat(bends, 2), mesh.n_vertices)
     mean, areas = np.full(mesh.n_vertices, np.nan), mesh.vertex_areas
+    is_closed = t.vertex_is_manifold & ~t.vertex_is_boundary & (areas > 0.0)
     if t.is_orientable:
-        np.divide(total, areas, out=mean, where=t.vertex_is_manifold & ~t.vertex_is_boundary & (areas > 0.0))
-    return np.stack((angle_defect(mesh).gaussian, mean), axis=1)
+        np.divide(total, areas, out=mean, where=is_closed)
+    return np.stack((np.where(is_closed, angle_defect(mesh).gaussian, np.nan), mean), axis=1)
 
 
 def _common_share(mesh: TriangleMesh, residual: Floats, correlations: tuple[float, float]) -> Floats:
