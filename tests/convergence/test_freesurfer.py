@@ -30,9 +30,10 @@ def smoothed(mesh, values):
 @pytest.mark.parametrize("side", ("left", "right"))
 def test_mean_curvature_of_white_matter_surfaces(side, method):
     # `curv` was computed on a surface with sixteen times the vertices, and smoothed; it is positive in a sulcus.
-    # The best of the usual tools reaches 0.90 here and 0.96 after two steps of smoothing; `auto` 0.956 and 0.954.
+    # The best of the usual tools reaches 0.90 here and 0.96 after two steps of smoothing, `lifted` 0.90 and 0.951.
     mesh = TriangleMesh(*arrays(f"white_{side}.gii.gz"))
     reference = arrays(f"curv_{side}.gii.gz")[0].astype(np.float64)
     mean = surface_curvature(mesh, method=method).mean
-    assert np.corrcoef(mean, reference)[0, 1] < -0.89
-    assert np.corrcoef(smoothed(mesh, smoothed(mesh, mean)), reference)[0, 1] < (-0.953 if method == "auto" else -0.95)
+    raw, two_steps = (0.905, 0.955) if method == "auto" else (0.89, 0.95)
+    assert np.corrcoef(mean, reference)[0, 1] < -raw
+    assert np.corrcoef(smoothed(mesh, smoothed(mesh, mean)), reference)[0, 1] < -two_steps

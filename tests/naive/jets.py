@@ -21,9 +21,12 @@ def unit(p):
     return [x / math.sqrt(dot(p, p)) for x in p]
 
 
-def two_rings(faces, v):
-    """Vertices at most two edges away, v left out."""
-    return {x for w in ring(faces, v) for x in ring(faces, w)} - {v}
+def rings(faces, v, n):
+    """Vertices at most n edges away, v left out."""
+    found = {v}
+    for _ in range(n):
+        found |= {x for w in found for x in ring(faces, w)}
+    return found - {v}
 
 
 def local_frame(normal):
@@ -54,9 +57,9 @@ def least_squares(columns, target):
     return coefficients
 
 
-def design(points, order, softening):
+def design(points, order, softening, lowest=1):
     """Columns and target of the fit of a polynomial through 0: each height is divided by its squared distance."""
-    powers = [(d - e, e) for d in range(1, order + 1) for e in range(d + 1)]
+    powers = [(d - e, e) for d in range(lowest, order + 1) for e in range(d + 1)]
     weights = [1 / (x * x + y * y + z * z + softening) for x, y, z in points]
     columns = [[w * x**a * y**b for w, (x, y, _) in zip(weights, points, strict=True)] for a, b in powers]
     return weights, columns, [w * z for w, (_, _, z) in zip(weights, points, strict=True)]
@@ -84,3 +87,14 @@ def jet_curvatures(vertices, normal, members, v, size, order, softening):
     c = least_squares(columns, target)
     K, H = curvatures(c[0], c[1], 2 * c[2], c[3], 2 * c[4])
     return K / size**2, H / size
+
+
+def jet_with_centre(vertices, normal, members, v, size, order, softening):
+    """K, H and the unit normal at v from the members around it and v itself, which need not lie on the polynomial."""
+    a, b = local_frame(normal)
+    points = [*places(vertices, normal, members, v, size), [0.0, 0.0, 0.0]]
+    _, columns, target = design(points, order, softening, 0)
+    _, f1, f2, c11, f12, c22, *_ = least_squares(columns, target)
+    K, H = curvatures(f1, f2, 2 * c11, f12, 2 * c22)
+    found = unit([n - f1 * x - f2 * y for n, x, y in zip(normal, a, b, strict=True)])
+    return K / size**2, H / size, found

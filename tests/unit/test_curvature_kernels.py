@@ -9,7 +9,7 @@ from naive import stars as naive_stars
 from rinow import TriangleMesh, surface_curvature
 from rinow.curvature.lifted import lifted
 from rinow.curvature.stencils import empty_frames, stencil_surface
-from rinow.kernels import curves, monge, quadrics, stars, stencils
+from rinow.kernels import curves, monge, quadrics, ring_jets, stars, stencils
 
 TORUS = shapes.noisy(shapes.irregular_torus(300), 0.02)
 MESH = TriangleMesh(TORUS.vertices, TORUS.faces)
@@ -94,23 +94,49 @@ def test_stencils_are_the_sets_they_are_named_after():
     n_vertices = MESH.n_vertices
     members, marks = np.empty(n_vertices + 1, np.int32), np.zeros(n_vertices, np.int32)
     for v in CHOSEN:
-        n, reach = stencils.two_rings(v, surface, members, marks)
-        expected = naive_jets.two_rings(F, v)
-        assert members[0] == v
-        assert sorted(members[1:n]) == sorted(expected)
-        assert reach == pytest.approx(max(sum((np.array(V[w]) - V[v]) ** 2) for w in expected), rel=1e-14)
+        for n_rings in (2, 3):
+            marks[:] = 0
+            n, reach = stencils.rings(v, n_rings, surface, members, marks)
+            expected = naive_jets.rings(F, v, n_rings)
+            assert members[0] == v
+            assert sorted(members[1:n]) == sorted(expected)
+            assert reach == pytest.approx(max(sum((np.array(V[w]) - V[v]) ** 2) for w in expected), rel=1e-14)
 
 
 def test_quadric_equals_orthogonalised_least_squares():
     surface, frames = stencil_surface(MESH), empty_frames(len(CHOSEN))
     quadrics.ring_quadrics(np.array(CHOSEN), surface, False, 4, frames)
     for row, v in enumerate(CHOSEN):
-        members = sorted(naive_jets.two_rings(F, v))
+        members = sorted(naive_jets.rings(F, v, 2))
         size = max(np.linalg.norm(np.array(V[w]) - V[v]) for w in members)
         normal = surface.normals[v].tolist()
         K, H = naive_jets.jet_curvatures(V, normal, members, v, size, 2, stencils.SOFTENING)
         assert frames.k1[row] * frames.k2[row] == pytest.approx(K, rel=1e-9)
         assert (frames.k1[row] + frames.k2[row]) / 2 == pytest.approx(H, rel=1e-9)
+
+
+def test_ring_jets_equal_orthogonalised_least_squares_over_the_plane_of_a_first_fit():
+    surface, out = stencil_surface(MESH), np.empty((MESH.n_vertices, 2, 2))
+    ring_jets.ring_jets(surface, 4, out)
+    N = surface.normals.tolist()
+    for v in CHOSEN:
+        members, near = naive_jets.rings(F, v, 3), naive_jets.rings(F, v, 1)
+        size = max(np.linalg.norm(np.array(V[w]) - V[v]) for w in members)
+
+        def fit(normal, order):
+            facing = [w for w in sorted(members) if w in near or naive_jets.dot(N[w], normal) > stencils.FACING]  # noqa: B023
+            return naive_jets.jet_with_centre(V, normal, facing, v, size, order, stencils.SOFTENING)  # noqa: B023
+
+        *_, normal = fit(N[v], ring_jets.LOW)
+        expected = [fit(normal, order)[:2] for order in (ring_jets.LOW, ring_jets.HIGH)]
+        np.testing.assert_allclose(out[v], expected, rtol=1e-8)
+
+
+def test_too_few_points_for_a_cubic_leave_no_ring_jet():
+    for shape, is_known in ((shapes.tetrahedron(), False), (shapes.icosphere(0), False), (shapes.icosphere(1), True)):
+        out = np.empty((len(shape.vertices), 2, 2))
+        ring_jets.ring_jets(stencil_surface(TriangleMesh(shape.vertices, shape.faces)), 4, out)
+        assert (np.isfinite(out) == is_known).all()
 
 
 @pytest.mark.parametrize("seed", range(40, 48))

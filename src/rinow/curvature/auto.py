@@ -51,7 +51,7 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     :math:`(K \max_e (\kappa_e c_e)^2/12)^2` for the chords c of normal curvature κ that stand for geodesics, which edge
     lengths alone cannot show.  The weights are the inverse squared errors.
 
-    Where fits call detail noise that stars of neighbouring vertices have in common, stars of two rings or of one
+    Where fits call detail noise that rings of neighbouring vertices have in common, estimates from one to three rings
     are taken (`rinow.curvature.unresolved`).
 
     Edge lengths are examined only if this last term leaves room for a gain at some two percent of the vertices (with

@@ -7,22 +7,26 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow.curvature.angle_defect import longest_edges, ring_deviations
+from rinow.curvature.angle_defect import angle_defect, longest_edges, ring_deviations
+from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.steiner import steiner_curvatures
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, stencil_surface
-from rinow.kernels import quadrics, stencils
+from rinow.kernels import quadrics, ring_jets, stencils
 from rinow.mesh import TriangleMesh
 
-__all__ = ["with_detail"]
+__all__ = ["single_rings", "with_detail"]
 
 Floats = NDArray[np.float64]
 
-NOISY = 0.005
+NOISY = 0.001
 """Noise of the positions, over the spacing, below which fits have resolved everything."""
-OF_FITS, OF_QUADRICS = (0.05, 0.3), (-0.1, 0.1)
-"""Correlations of neighbours up to which what fits, or quadrics of two rings, leave is noise, and from which detail.
-White noise has -0.14 and -0.28 (mean curvature) or -0.21 (Gaussian)."""
+OF_FITS, OF_CUBICS, OF_QUARTICS = (0.0, 0.2), (-0.1, 0.1), (0.1, 0.3)
+"""Correlations of neighbours up to which a difference is noise, and from which detail: of quadrics from fits, of single
+rings from cubics, of quartics from cubics.  White noise has -0.14, -0.25 and -0.1."""
+LEFT = (0.2, 0.1)
+"""Correlations of single rings' differences from quartics from which on these have missed detail, down to noise."""
+HALF = 0.5
+"""Largest share of single rings: folds that a cubic flattens, these exaggerate as much."""
 PASSES = 10
 """Averages over rings of neighbours: some hundred vertices decide together, if their component as a whole agrees."""
 LARGEST = 3.0
@@ -33,17 +37,19 @@ then leaves it as it is, unless it lies at a border."""
 
 
 def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
-    """An estimate by fits, with the curvature of stars where fits over larger balls have smoothed detail away.
+    """An estimate by fits, with the curvature of rings where fits over larger balls have smoothed detail away.
 
     Notes
     -----
-    The curvatures of a star are second differences of the positions.  Of independent noise the errors of such
-    differences at neighbouring vertices are anticorrelated: one vertex moved outwards raises its own and lowers those
-    around it.  So where the difference between the star and the fit is positively correlated between neighbours, and
-    the fits call it noise, it is detail that the fits have missed, and the star is nearer to the truth.
+    One rule decides everything.  The curvatures of rings are second differences of the positions.  Of independent noise
+    their errors at neighbouring vertices are anticorrelated: one vertex moved outwards raises its own and lowers those
+    around it.  So where the difference of two estimates is positively correlated between neighbours it is detail that
+    one of them has missed.
 
-    The stars are of two rings first, by a quadric through them.  By the same rule their curvatures move on to those of
-    Steiner's formula, which looks at one ring only.
+    - Quadrics of two rings against fits, where these speak of noise: with detail in between, rings are taken.
+    - Single rings against cubics of three rings, which they are averaged with as far as those miss detail.
+    - Quartics against cubics.  They come nearest to the truth, if there is detail in between, and if they in turn leave
+      no detail to single rings; if they do, then waves are too short for any polynomial.
     """
     if estimate.mean is None or estimate.noise is None or estimate.spacing is None:
         return estimate
@@ -52,12 +58,12 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     if not is_noisy.any():
         return estimate
     star = _two_rings(mesh)
-    share = _detail_share(mesh, (star.mean - estimate.mean) * estimate.spacing, OF_FITS)  # type: ignore[operator]
+    share = _common_share(mesh, (star.mean - estimate.mean) * estimate.spacing, OF_FITS)  # type: ignore[operator]
     share[~(is_noisy & np.isfinite(star.gaussian) & np.isfinite(estimate.gaussian))] = 0.0
     share[mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
     if not share.any():
         return estimate
-    return _blend(estimate, _with_one_ring(mesh, star, estimate.spacing), share)
+    return _blend(estimate, _with_detail_of_rings(mesh, star, estimate.spacing), share)
 
 
 def _two_rings(mesh: TriangleMesh) -> Estimate:
@@ -69,19 +75,47 @@ def _two_rings(mesh: TriangleMesh) -> Estimate:
     return Estimate(gaussian, spread, reach, mean, q.k1, q.k2, q.direction1, q.direction2)
 
 
-def _with_one_ring(mesh: TriangleMesh, star: Estimate, spacing: Floats) -> Estimate:
-    """The stars of two rings, with the curvatures of one where it shows more detail than noise."""
-    gaussian, mean = steiner_curvatures(mesh)
-    values: dict[str, Floats] = {}
-    for name, power, one_ring in (("gaussian", 2, gaussian), ("mean", 1, mean)):
-        step = one_ring - getattr(star, name)
-        share = _detail_share(mesh, step * spacing**power, OF_QUADRICS)
-        values[name] = getattr(star, name) + np.where(np.isfinite(step), share * step, 0.0)
-    return replace(star, spread=ring_deviations(mesh, values["gaussian"]), **values)
+def _with_detail_of_rings(mesh: TriangleMesh, star: Estimate, spacing: Floats) -> Estimate:
+    """The stars with curvatures of cubics, moved towards single rings and quartics where those show detail."""
+    jets, single = np.empty((mesh.n_vertices, 2, 2)), single_rings(mesh)
+    ring_jets.ring_jets(stencil_surface(mesh), N_BLOCKS, jets)
+    cubic, quartic = jets[:, 0], jets[:, 1]
+
+    def share(step: Floats, correlations: tuple[float, float]) -> Floats:
+        return _common_share(mesh, step[:, 1] * spacing, correlations)
+
+    values = cubic + _times(HALF * share(single - cubic, OF_CUBICS), single - cubic)
+    of_quartic = np.minimum(share(quartic - cubic, OF_QUARTICS), share(single - quartic, LEFT))
+    values += _times(of_quartic, quartic - values)
+    values = np.where(np.isfinite(values), values, np.stack((star.gaussian, star.mean), axis=1))  # type: ignore[arg-type]
+    gaussian, mean = np.ascontiguousarray(values.T)
+    spread, radius = ring_deviations(mesh, gaussian), ring_jets.N_RINGS * star.radius
+    return replace(star, gaussian=gaussian, mean=mean, spread=spread, radius=radius)
 
 
-def _detail_share(mesh: TriangleMesh, residual: Floats, correlations: tuple[float, float]) -> Floats:
-    """(n_vertices,): 0 where the residual is like noise, 1 where neighbours have it in common."""
+def single_rings(mesh: TriangleMesh) -> Floats:
+    r"""(n_vertices, 2): Gaussian and mean curvature by Steiner's formula; nan where the star is not one closed fan.
+
+    Notes
+    -----
+    The parallel surface of a convex polyhedron at distance ε has the area
+    :math:`A + ε \sum_e l_e θ_e + ε^2 \sum_i δ_i`, for lengths l and turnings θ of its edges and angle defects δ; that
+    of a smooth one is :math:`A + 2ε \int H + ε^2 \int K`.  Half of each edge belongs to each of its ends:
+    :math:`K_i = δ_i / A_i` and :math:`H_i = \sum_{e \ni i} l_e θ_e / (4 A_i)`.  Without a consistent orientation there
+    is no mean curvature.  No other estimate looks at less of the surface, so none smooths less of its detail.
+    """
+    t, edges = mesh.topology, mesh.topology.edges
+    bends = EdgeTurnings(mesh).turnings * np.linalg.norm(np.subtract(*mesh.vertices[edges.T]), axis=1)
+    total = 0.25 * np.bincount(edges.ravel(), np.repeat(bends, 2), mesh.n_vertices)
+    mean, areas = np.full(mesh.n_vertices, np.nan), mesh.vertex_areas
+    is_closed = t.vertex_is_manifold & ~t.vertex_is_boundary & (areas > 0.0)
+    if t.is_orientable:
+        np.divide(total, areas, out=mean, where=is_closed)
+    return np.stack((np.where(is_closed, angle_defect(mesh).gaussian, np.nan), mean), axis=1)
+
+
+def _common_share(mesh: TriangleMesh, residual: Floats, correlations: tuple[float, float]) -> Floats:
+    """(n_vertices,): 0 where neighbours have a residual in common as the first correlation says, 1 as the second."""
     known = np.isfinite(residual) & ~mesh.topology.vertex_is_boundary
     middle = float(np.median(np.abs(residual[known]))) if known.any() else 0.0
     largest = LARGEST * 2.0 ** (np.round(STEPS * np.log2(middle)) / STEPS) if middle > 0.0 else 0.0
@@ -94,9 +128,9 @@ def _detail_share(mesh: TriangleMesh, residual: Floats, correlations: tuple[floa
 
 
 def _share_of(correlations: tuple[float, float], covariance: Floats, variance: Floats) -> Floats:
-    of_noise, of_detail = correlations
-    correlation = np.divide(covariance, variance, out=np.zeros_like(variance), where=variance > 0.0)
-    return np.clip((correlation - of_noise) / (of_detail - of_noise), 0.0, 1.0)
+    none, full = correlations
+    correlation = np.divide(covariance, variance, out=np.full_like(variance, none), where=variance > 0.0)
+    return np.clip((correlation - none) / (full - none), 0.0, 1.0)
 
 
 def _ring_means(mesh: TriangleMesh, values: Floats, passes: int, *, itself: bool = True) -> Floats:
@@ -108,6 +142,11 @@ def _ring_means(mesh: TriangleMesh, values: Floats, passes: int, *, itself: bool
         stencils.ring_sums(values, t.neighbour_offsets, t.neighbours, sums)
         values = (sums if itself else sums - values) / count
     return values
+
+
+def _times(share: Floats, step: Floats) -> Floats:
+    """Steps (n_vertices, 2) by their shares; none where the step is unknown."""
+    return np.where(np.isfinite(step), share[:, None] * step, 0.0)
 
 
 def _blend(fit: Estimate, star: Estimate, share: Floats) -> Estimate:

@@ -101,7 +101,7 @@ def ring_quadrics(rows, surface, is_small, n_blocks, frames):
         points, coefficients = np.empty((n_vertices, 3)), np.empty(5)
         for row in range(n * block // n_blocks, n * (block + 1) // n_blocks):
             v = rows[row]
-            size, reach = stencils.two_rings(v, surface, members, marks)
+            size, reach = stencils.rings(v, 2, surface, members, marks)
             normal, unit = stencils.normal_at(v, surface), math.sqrt(reach)
             if is_small:
                 size = stencils.facing(members, size, normal, surface)

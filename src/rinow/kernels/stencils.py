@@ -128,13 +128,13 @@ def spokes(w, is_centre, offsets):
 
 
 @inner
-def two_rings(v, surface, members, marks):
-    """Write v, its neighbours and their neighbours to `members`; how many, and the largest squared distance."""
+def rings(v, n_rings, surface, members, marks):
+    """Write v and all vertices at most so many edges away to `members`; how many, and the largest squared distance."""
     offsets, neighbours = surface.offsets, surface.neighbours
     members[0] = v
     marks[v] = v + 1
     begin, n = 0, 1
-    for _ in range(2):
+    for _ in range(n_rings):
         end = n
         for m in range(begin, end):
             for i in range(*spokes(members[m], m == 0, offsets)):
@@ -151,14 +151,14 @@ def two_rings(v, surface, members, marks):
 
 @inner
 def facing(members, n, normal, surface):
-    """Keep of the members v, its neighbours, and those whose normals are turned little from that of v; how many."""
+    """Move v, its neighbours and the members whose normals are turned little from a normal to the front; how many."""
     x, y, z = normal
     kept = min(n, 1 + surface.offsets[members[0] + 1] - surface.offsets[members[0]])
     for m in range(kept, n):
         nx, ny, nz = surface.normals[members[m]]
         cosine = x * nx + y * ny + z * nz
         if cosine > FACING or (not surface.is_oriented and cosine < -FACING):
-            members[kept] = members[m]
+            members[kept], members[m] = members[m], members[kept]
             kept += 1
     return kept
 
