@@ -166,9 +166,9 @@ def test_parts_of_the_error_add_up_to_the_spread():
     c = surface_curvature(mesh, method="intrinsic")
     K, square = np.abs(c.gaussian), longest_edges(mesh) ** 2
     chords = 5 / 24 * K * ((1 - found.on_arcs) * K * square + found.on_arcs * (K * square) ** 2)
-    expected = CALIBRATION**2 * (found.variance + found.squared_bias) + chords**2
+    expected = CALIBRATION**2 * (found.variance + found.squared_bias + found.unseen) + chords**2
     np.testing.assert_allclose(c.spread**2, expected, rtol=1e-12)
-    assert (found.variance >= 0).all() and (found.squared_bias >= 0).all()
+    assert (np.array([found.variance, found.squared_bias, found.unseen]) >= 0).all()
 
 
 # ------------------------------------------------------------------ invariance

@@ -65,11 +65,9 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
 
 
 def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> Estimate:
-    k1, k2, noise, spacing = estimate.k1, estimate.k2, estimate.noise, estimate.spacing
-    if k1 is None or k2 is None or noise is None or spacing is None:
+    k1, k2, noise, spacing, risk = estimate.k1, estimate.k2, estimate.noise, estimate.spacing, estimate.risk
+    if k1 is None or k2 is None or noise is None or spacing is None or risk is None:
         return estimate
-    calibration = QUALITIES[quality].calibration
-    risk = np.square(estimate.spread / calibration)
     chords = estimate.gaussian**2 * np.square(_chord_errors(mesh, estimate))
     largest = np.fmax(np.fmax(np.abs(k1), np.abs(k2)), FLAT / spacing)
     hopeful = (risk > np.fmax(chords, (RESOLVED * largest**2) ** 2)) & (noise < QUIET * spacing)
@@ -82,7 +80,7 @@ def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> 
     hopeful &= np.isfinite(other) & np.isfinite(found.gaussian)
     share = np.divide(risk, risk + other, out=np.zeros_like(risk), where=hopeful & (risk > 0.0))
     step = np.where(share > 0.0, share * (found.gaussian - estimate.gaussian), 0.0)
-    spread = calibration * np.sqrt(np.where(share > 0.5, other, risk))
+    spread = np.where(share > 0.5, QUALITIES[quality].calibration * np.sqrt(other), estimate.spread)
     return estimate.with_gaussian(estimate.gaussian + step, spread)
 
 

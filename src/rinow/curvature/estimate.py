@@ -27,6 +27,9 @@ class Estimate:
         Unit principal directions.
     noise, spacing : (n_vertices,) ndarray of float or None
         Standard deviation of the positions from a smooth surface, and the distance of neighbours.
+    risk : (n_vertices,) ndarray of float or None
+        Squared error of the Gaussian curvature expected by the choice of scale and order, by which estimates are
+        weighted.  The spread holds more: what that choice does not see.
     """
 
     gaussian: Floats
@@ -39,6 +42,7 @@ class Estimate:
     direction2: Floats | None = None
     noise: Floats | None = None
     spacing: Floats | None = None
+    risk: Floats | None = None
 
     def with_gaussian(self, gaussian: Floats, spread: Floats) -> Estimate:
         """The same with another Gaussian curvature: k1 and k2 have it as their product.

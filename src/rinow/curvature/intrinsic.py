@@ -15,6 +15,7 @@ from rinow.curvature.estimate import Estimate
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.length_noise import LengthNoise
 from rinow.curvature.powers import LADDER, ORDER, REFERENCE, Powers, combination
+from rinow.curvature.unseen import unseen_error
 from rinow.kernels import patch_order
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
@@ -26,7 +27,7 @@ PASSES, SHRINK_PASSES = 10, 40
 """Repetitions of the mean over a ring that average squared errors."""
 VARIANCE_PASSES = 3
 """The same for the mean that a variance is raised to."""
-CALIBRATION = 1.6
+CALIBRATION = 1.5
 """Spread over the root of the least predicted squared error: the candidate chosen is the one that looks best."""
 SUPPORT = 10.0
 """Squared radius of the ball over the variance of the weights (1 - (d/radius)²)³ in it along one axis."""
@@ -47,14 +48,17 @@ UNSEEN = 1.0 / 12.0 + 1.0 / 8.0
 
 @dataclass(frozen=True, slots=True)
 class IntrinsicCurvature:
-    """Gaussian curvature at each vertex, with the two parts of its predicted squared error.
+    """Gaussian curvature at each vertex, with the parts of its predicted squared error.
 
     Attributes
     ----------
     gaussian : (n_vertices,) ndarray of float
         In 1/length²; nan where no interior vertex is near.
     variance, squared_bias : (n_vertices,) ndarray of float
-        Expected squared error by noise of the lengths, and by the average over a neighbourhood.
+        Expected squared error by noise of the lengths, and by the average over a neighbourhood: what the choice of
+        scale and order is made by.
+    unseen : (n_vertices,) ndarray of float
+        Squared error that this choice does not see: `rinow.curvature.unseen`.
     radius : (n_vertices,) ndarray of float
         Radius of the ball averaged over.
     on_arcs : (n_vertices,) ndarray of float
@@ -64,6 +68,7 @@ class IntrinsicCurvature:
     gaussian: Floats
     variance: Floats
     squared_bias: Floats
+    unseen: Floats
     radius: Floats
     on_arcs: Floats
 
@@ -71,7 +76,7 @@ class IntrinsicCurvature:
 def intrinsic_curvature(
     mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None, most_steps: int = LADDER[-1]
 ) -> IntrinsicCurvature:
-    """Gaussian curvature from edge lengths, with variance and squared bias; see `intrinsic`.
+    """Gaussian curvature from edge lengths, with the parts of its squared error; see `intrinsic`.
 
     Parameters
     ----------
@@ -128,7 +133,8 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
     powers = Powers(flow, start)
     tau2 = noise.level(flow, powers)
     n = mesh.n_vertices
-    best = IntrinsicCurvature(np.full(n, np.nan), np.full(n, np.inf), np.zeros(n), np.zeros(n), shares)
+    bias, unseen, radii = np.zeros((3, n))
+    best = IntrinsicCurvature(np.full(n, np.nan), np.full(n, np.inf), bias, unseen, radii, shares)
     wanted = None if radius is None else _nearest_rung(radius, noise)
     idle = 0
     for m in LADDER[: bisect_right(LADDER, most_steps)]:
@@ -141,7 +147,9 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
         powers.forget(m + 1)
     best.gaussian[_is_flat(flow) & np.isfinite(best.gaussian)] = 0.0
     _shrink(best, flow)
-    for values in (best.variance, best.squared_bias, best.radius):
+    scale = best.radius**2 / SUPPORT
+    best.unseen[:] = unseen_error(flow, noise, start, tau2, best.gaussian, best.squared_bias, scale)
+    for values in (best.variance, best.squared_bias, best.unseen, best.radius):
         values[~np.isfinite(best.gaussian)] = np.nan
     return best
 
@@ -232,7 +240,7 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
     -------
     estimate : Estimate
         `gaussian` everywhere but at vertices that are not manifold or far from any interior vertex; at the boundary
-        from the interior nearby.  `spread` is 1.6 times the root of the predicted squared error, and no
+        from the interior nearby.  `spread` is 1.5 times the root of the predicted squared error, and no
         less than the error of chords.
 
     Notes
@@ -263,5 +271,5 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
     found = intrinsic_curvature(mesh, radius=radius)
     square = np.abs(found.gaussian) * np.square(longest_edges(mesh))
     chords = UNSEEN * np.abs(found.gaussian) * square * (1.0 - found.on_arcs + found.on_arcs * square)
-    spread = np.sqrt(CALIBRATION**2 * (found.variance + found.squared_bias) + chords * chords)
+    spread = np.sqrt(CALIBRATION**2 * (found.variance + found.squared_bias + found.unseen) + chords * chords)
     return Estimate(found.gaussian, spread, found.radius)

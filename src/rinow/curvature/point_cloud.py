@@ -12,7 +12,7 @@ from rinow._executor import SerialExecutor
 from rinow.curvature.cloud_sheet import cloud_sheet
 from rinow.curvature.patch_tasks import Tasks
 from rinow.curvature.scale import Ladder, sample
-from rinow.curvature.sectional import EDGE_RINGS, QUALITIES, blended_patches, rings_around, shrinkage
+from rinow.curvature.sectional import EDGE_RINGS, QUALITIES, blended_patches, rings_around, shrinkage, standard_errors
 from rinow.curvature.status import VertexStatus
 from rinow.curvature.stencils import N_BLOCKS, empty_frames
 from rinow.curvature.surface import SurfaceCurvature
@@ -113,7 +113,7 @@ def _of_distinct(points: Floats, radius: float | None) -> tuple[Floats, Floats, 
     at_edge = rings_around(sheet, at_border, EDGE_RINGS)
     out, direction1, direction2 = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)[:3]
     out[:, 0] *= shrinkage(samples, out)
-    values = np.column_stack([out[:, 0], out[:, 1], quality.calibration * np.sqrt(out[:, 2]), out[:, 3]])
+    values = np.column_stack([out[:, 0], out[:, 1], standard_errors(out, quality, at_border), out[:, 3]])
     missing = np.flatnonzero(~np.isfinite(values[:, 0]))
     values[missing] = np.nan
     if len(missing) and radius is None:

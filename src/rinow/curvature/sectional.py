@@ -21,7 +21,7 @@ from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencil
 from rinow.mesh import TriangleMesh
 from rinow.topology import Topology
 
-__all__ = ["EDGE_RINGS", "QUALITIES", "blended_patches", "rings_around", "sectional", "shrinkage"]
+__all__ = ["EDGE_RINGS", "QUALITIES", "blended_patches", "rings_around", "sectional", "shrinkage", "standard_errors"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -34,8 +34,11 @@ PASSES = 2
 FLAT_DEFECT = 1e-10
 """Angle defects below this, in radians, are rounding: a neighbourhood of such vertices is isometric to the plane."""
 FLAT_RINGS = 3
-EDGE_CALIBRATION = 1.4
+EDGE_CALIBRATION = 1.5
 """Standard error at a boundary over that inside: biases are averaged over places that have points on all sides."""
+APART = 3.0
+"""Squared error over the variance between the patches of a vertex: they share most of their points, so that they err
+together more than they differ."""
 EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 4, 6
 """Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, worse placed."""
 AROUND = 2.2
@@ -47,9 +50,9 @@ class Quality(NamedTuple):
 
     A patch covers `share` times the least radius near it, at least `least` spacings.  With `selects` each chooses its
     order and radius, else the samples near it do, except beside a boundary, where those of the interior are too bold.
-    Patches are weighted by their risk to the power `-power`.  The standard error is `calibration` times the root of the
-    least risk: the noise is the least of many estimates, the fit the one that looks best, and where samples choose, its
-    bias is that of other places.
+    Patches are weighted by their risk to the power `-power`.  The standard error counts the least risk `calibration`
+    times: the noise is the least of many estimates, the fit the one that looks best, and where samples choose, its bias
+    is that of other places.
     """
 
     share: float
@@ -59,7 +62,7 @@ class Quality(NamedTuple):
     calibration: float
 
 
-QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5, 1.5), "fast": Quality(0.3, 1.2, False, 1.0, 2.0)}
+QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5, 1.4), "fast": Quality(0.3, 1.2, False, 1.0, 1.8)}
 
 
 def sectional(
@@ -121,13 +124,14 @@ def sectional(
     samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks)
     out, direction1, direction2, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
     out[:, 0] *= shrinkage(samples, out)
-    gaussian, mean, risk, reach = (_spread_out(out[:, i], index, mesh.n_vertices) for i in range(4))
+    errors = standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
+    columns = *out[:, :4].T, errors
+    gaussian, mean, risk, reach, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
     noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
-    spread = QUALITIES[quality].calibration * np.sqrt(risk)
-    spread[mesh.topology.vertex_is_boundary] *= EDGE_CALIBRATION
-    estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
+    principal = mean + half, mean - half, direction1, direction2
+    estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk)
     estimate.put(on_edge, ends)
     _doubt_ends(mesh, estimate)
     if radius is None:
@@ -142,7 +146,7 @@ def sectional(
 def blended_patches(
     sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, at_edge: NDArray[np.bool_], tasks: Tasks
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """K, H, risk, radius and order at the vertices of the sheet, principal directions, and variance of the noise."""
+    """What `patches.mean_values` tells at the vertices of the sheet, and the variance of the noise."""
     low, high, top, noise = windows(samples)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, core)
@@ -160,14 +164,20 @@ def blended_patches(
         choice.radius[own], choice.order[own], choice.risk[own] = found
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
-    totals = np.zeros((len(sheet.vertices), patches.N_VALUES))
+    totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
     fitting = ladder.fitting(
         patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
     )
     add_patches(fitting, CORE * core, choice.risk, quality.power, totals, tasks, 0.2)
-    out, direction1, direction2 = np.empty((len(totals), 5)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
+    out, direction1, direction2 = np.empty((len(totals), 6)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
     patches.mean_values(totals, sheet.normals, out, direction1, direction2)
     return out, direction1, direction2, noise
+
+
+def standard_errors(out: Floats, quality: Quality, at_boundary: NDArray[np.bool_]) -> Floats:
+    """Standard errors of K (n,) by the risks of patches and by what they differ, in columns 2 and 5 of their means."""
+    errors = np.sqrt(quality.calibration**2 * out[:, 2] + APART * out[:, 5])
+    return np.where(at_boundary, EDGE_CALIBRATION * errors, errors)
 
 
 def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:

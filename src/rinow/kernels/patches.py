@@ -215,19 +215,26 @@ def write_patch(start, stop, size, top, asked, reach, frame, patch, fit, sheet, 
 
 @kernel
 def add_values(vertices, values, totals):
-    """Add the values of patches to the totals of their vertices."""
+    """Add the values of patches to the totals of their vertices; the last total is of the squared deviations of K."""
+    last = values.shape[1]
     for i in range(len(vertices)):
         v = vertices[i]
-        if v >= 0:
-            for k in range(totals.shape[1]):
-                totals[v, k] += values[i, k]
+        if v < 0:
+            continue
+        weight, more = totals[v, 0], values[i, 0]
+        if weight > 0.0 and more > 0.0:
+            apart = values[i, 1] / more - totals[v, 1] / weight
+            totals[v, last] += weight * more / (weight + more) * apart * apart
+        for k in range(last):
+            totals[v, k] += values[i, k]
 
 
 @parallel_kernel
 def mean_values(totals, normals, out, direction1, direction2):
-    """Write K, H, risk, radius, order, and the principal directions of the weighted means, k1 >= k2; nan without.
+    """Write K, H, risk, radius, order, variance of K between patches, and principal directions of the weighted means.
 
-    Curvatures change their sign here: positive where the surface bends away from its normal.
+    All are nan without a patch; k1 >= k2.  Curvatures change their sign here: positive where the surface bends away
+    from its normal.
     """
     for v in prange(len(totals)):
         total, weight = totals[v], totals[v, 0]
@@ -237,6 +244,7 @@ def mean_values(totals, normals, out, direction1, direction2):
             continue
         out[v, 0], out[v, 1] = total[1] / weight, -total[2] / weight
         out[v, 2], out[v, 3], out[v, 4] = total[3] / weight, total[4] / weight, total[14] / weight
+        out[v, 5] = total[N_VALUES] / weight
         n = (total[11], total[12], total[13])
         length = stencils.norm(n)
         if not length > 0.0:
