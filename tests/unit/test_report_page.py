@@ -90,7 +90,7 @@ def test_mesh_and_fields_come_back():
     scene = surface_scene(study, features)
     arrays = decoded(scene.header, scene.data)
     finite = mesh.vertex_is_finite
-    step, extent = scene.header["step"], np.ptp(mesh.vertices[finite], axis=0).max()
+    step, extent = scene.header["step"], np.ptp(mesh.vertices[mesh.topology.vertex_is_used], axis=0).max()
     assert step == pytest.approx(extent / POSITION_STEPS)
     positions = np.array(scene.header["origin"]) + step * arrays["positions"]
     # half a step, and the rounding of the sum
@@ -106,6 +106,17 @@ def test_mesh_and_fields_come_back():
     at = arrays["direction_vertices"]
     assert np.abs(arrays["direction1"] / 127 - study.curvature.direction1[at]).max() <= 0.5 / 127 + 1e-12
     np.testing.assert_array_equal(arrays["crease_edges"].reshape(-1, 2), features.features.crease_edges)
+
+
+def test_a_far_vertex_without_a_face_neither_blurs_the_surface_nor_is_lost():
+    mesh = faulty_mesh()
+    vertices = mesh.vertices.copy()
+    vertices[-1] = [1e9, 0, 0]
+    study = study_surface(rinow.TriangleMesh(vertices, mesh.faces), method="angle_defect")
+    scene = surface_scene(study)
+    positions = decoded(scene.header, scene.data)["positions"]
+    assert scene.header["step"] == pytest.approx(1e9 / 2**32, rel=1e-6)  # as far as 32 bits reach
+    assert positions[-1, 0] * scene.header["step"] == pytest.approx(1e9, rel=1e-6)
 
 
 def test_directions_of_large_meshes_are_spread_over_all_of_the_surface(monkeypatch):

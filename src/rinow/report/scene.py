@@ -26,7 +26,8 @@ __all__ = ["Scene", "surface_scene"]
 Floats = NDArray[np.float64]
 
 POSITION_STEPS = 2**20 - 1
-"""Steps along the longest side of the bounding box: a tenth of a pixel on the largest screens."""
+"""Steps along the longest side of the box of all faces: a hundredth of a pixel on the largest screens."""
+MOST_STEPS = 2**32 - 2
 DIRECTION_STEPS = 127
 MOST_DIRECTIONS = 8_000
 """Vertices at which principal directions are drawn; more lines hide the surface."""
@@ -77,11 +78,10 @@ def surface_scene(
         non-finite positions are left out.
     """
     mesh = study.mesh
-    finite = mesh.vertices[mesh.vertex_is_finite]
-    origin = finite.min(axis=0) if len(finite) else np.zeros(3)
-    extent = float((finite.max(axis=0) - origin).max()) if len(finite) else 0.0
-    step = extent / POSITION_STEPS if extent > 0.0 else 1.0
     shown = mesh.vertex_is_finite[mesh.faces].all(axis=1)
+    in_faces = np.zeros(mesh.n_vertices, np.bool_)
+    in_faces[mesh.faces[shown].ravel()] = True
+    origin, step = _grid(mesh.vertices[mesh.vertex_is_finite], mesh.vertices[in_faces])
     positions = np.rint((np.where(mesh.vertex_is_finite[:, None], mesh.vertices, origin) - origin) / step)
     fields = study.fields(field)
     arrays: dict[str, NDArray[Any]] = {
@@ -110,6 +110,16 @@ def surface_scene(
         "maps": {name: _colour_map(name) for name in ("RdBu_r", "viridis")},
     }
     return Scene(header, data)
+
+
+def _grid(finite: Floats, shown: Floats) -> tuple[Floats, float]:
+    """Origin and step of the positions: fine for the vertices of faces, and coarse enough to reach all others."""
+    if len(finite) == 0:
+        return np.zeros(3), 1.0
+    origin = finite.min(axis=0)
+    reach = float((finite.max(axis=0) - origin).max()) / MOST_STEPS
+    extent = float(np.ptp(shown, axis=0).max()) / POSITION_STEPS if len(shown) else 0.0
+    return origin, max(extent, reach) or 1.0
 
 
 def compact(values: Floats) -> NDArray[np.floating[Any]]:

@@ -90,7 +90,9 @@ function drawLegend(svg, field, low, high, areas) {
   }
   for (const share of [0, 0.5, 1]) {
     items.push(`<line x1="${x(share)}" x2="${x(share)}" y1="${top + 3 + bar}" y2="${top + 7 + bar}" class="tick"/>`);
-    items.push(label(x(share), height - 3, short(low + share * (high - low)), "middle"));
+    const text = short(low + share * (high - low));
+    const [at, anchor] = text.length < 9 || share === 0.5 ? [x(share), "middle"] : share ? [width, "end"] : [0, "start"];
+    items.push(label(at, height - 3, text, anchor));
   }
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.innerHTML = items.join("");

@@ -201,7 +201,8 @@ class Page {
     $("vertex-clear").hidden = vertex < 0;
     $("vertex").removeAttribute("aria-invalid");
     $("readout").setAttribute("aria-live", vertex >= 0 ? "polite" : "off");
-    this.viewer?.mark(vertex);
+    const hasPlace = Object.keys(this.scene.statuses)[this.scene.arrays.status[vertex]] !== "NONFINITE";
+    this.viewer?.mark(hasPlace ? vertex : -1);
     this.showVertex(vertex);
   }
 
@@ -209,7 +210,7 @@ class Page {
     const vertex = this.vertexOf($("vertex").value);
     if (vertex < 0 && $("vertex").value !== "") return $("vertex").setAttribute("aria-invalid", "true");
     this.hold(vertex);
-    if (vertex >= 0) this.viewer?.centre(vertex);
+    if (vertex >= 0 && this.viewer?.marker.visible) this.viewer.centre(vertex);
   }
 
   showVertex(vertex) {

@@ -12,7 +12,7 @@ class Viewer {
     this.arrays = scene.arrays;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.setClearColor(0, 0);
-    [this.places, this.unitsPerLength] = unitPlaces(scene.arrays.positions, scene.arrays.status, scene.step);
+    [this.places, this.unitsPerLength] = unitPlaces(scene.arrays.positions, scene.arrays.faces, scene.step);
     this.tints = new Uint8Array(4 * scene.vertices).fill(255);
     this.world = new THREE.Scene();
     this.layers = new Map();
@@ -161,6 +161,7 @@ class Viewer {
     let distance = 0;
     for (let i = 0; i < this.places.length; i += 3) {
       place.fromArray(this.places, i);
+      if (place.length() > HALF_DIAGONAL) continue; // a vertex that no face has
       const reach = Math.max(Math.abs(place.dot(above)), Math.abs(place.dot(right)) / this.camera.aspect);
       distance = Math.max(distance, place.dot(towards) + (MARGIN * reach) / slope);
     }
