@@ -24,7 +24,8 @@ def angle_defect(mesh: TriangleMesh | IntrinsicMesh) -> Estimate:
     estimate : Estimate
         `gaussian` is nan at the boundary and for a star of area 0.  `radius` is the longest edge of the star.
         `spread` is the standard deviation of the values over the vertex and its neighbours, so it measures
-        the scatter of irregular meshes and, besides, how much the curvature itself varies over the star.
+        the scatter of irregular meshes and, besides, how much the curvature itself varies over the star; errors
+        that neighbours have in common it does not show.
 
     Notes
     -----

@@ -240,8 +240,8 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
     -------
     estimate : Estimate
         `gaussian` everywhere but at vertices that are not manifold or far from any interior vertex; at the boundary
-        from the interior nearby.  `spread` is 1.5 times the root of the predicted squared error, and no
-        less than the error of chords.
+        from the interior nearby.  `spread` is 1.5 times the root of the predicted squared error, with what
+        the choice does not see (`rinow.curvature.unseen`), and no less than the error of chords.
 
     Notes
     -----
