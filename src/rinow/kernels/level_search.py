@@ -2,8 +2,8 @@
 
 For each point and each distance of the other space the points at a distance that agrees are listed once, as bits.  So
 one decision costs an intersection for each row and column.  What the pairs of a row support is united once for each
-distance; then every other row is intersected with the union for its distance from that row.  Each node is hundreds of
-times cheaper than with the runs of `compatibility`, which any distances have.
+distance; then every other row is intersected with the union for its distance from that row.  Each node is a
+hundred times cheaper than with the runs of `compatibility`, which any distances have.
 """
 
 from typing import Any, NamedTuple
