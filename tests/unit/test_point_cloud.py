@@ -87,11 +87,12 @@ def test_radius_is_used():
 
 def test_stars_are_those_of_the_triangulation():
     shape = shapes.icosphere(3)
-    sheet, at_border = cloud_sheet(shape.vertices)
+    sheet, faces, at_border = cloud_sheet(shape.vertices)
     mesh = rinow.TriangleMesh(shape.vertices, shape.faces)
     assert not at_border.any()
     np.testing.assert_array_equal(np.diff(sheet.offsets), np.diff(mesh.topology.neighbour_offsets))
     assert (np.sum(sheet.normals * shape.vertices, axis=1) > 0.99).all()
+    assert {frozenset(f) for f in faces.tolist()} == {frozenset(f) for f in shape.faces.tolist()}
 
 
 def test_too_few_points_and_lines_are_unresolved():

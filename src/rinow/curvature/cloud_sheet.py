@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 from scipy.spatial import KDTree
 
+from rinow.curvature.cloud_faces import agreed_triangles
 from rinow.curvature.stencils import N_BLOCKS, NEEDLES
 from rinow.kernels import balls, clouds, stencils
 
-__all__ = ["cloud_sheet"]
+__all__ = ["Cloud", "cloud_sheet"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -19,32 +22,46 @@ Indices = NDArray[np.intp]
 
 NEAREST = 36
 """Points looked at around each one: five rows of points that are five times as near along a row as across."""
+SKEW = 0.1
+"""Shear of the plane along the long axis of a star.  Rectangles of rows of points have two Delaunay triangulations;
+all are cut along the same one of their diagonals then, as in a structured mesh."""
 BORDER_GAP = 2.8
 """Angle between neighbours, in radians, that tells a border: inside, Delaunay triangles have less."""
 
 
-def cloud_sheet(points: Floats) -> tuple[balls.Sheet, Bools]:
-    """The sheet of a cloud of distinct finite points, in their order, and which points are at a border.
+class Cloud(NamedTuple):
+    """A cloud as the fits see it, the triangles on which its stars agree, and which points are at a border."""
+
+    sheet: balls.Sheet
+    faces: Indices
+    at_border: Bools
+
+
+def cloud_sheet(points: Floats) -> Cloud:
+    """The sheet of a cloud of distinct finite points, in their order.
 
     Neighbours are those of the Delaunay triangulation of the nearest points, laid over the plane of least squares.
     Normals are the area vectors of these stars, averaged over the neighbours; their signs are carried along the tree
     on which normals turn least, outwards at the highest point of each component.
     """
-    near = np.asarray(KDTree(points).query(points, min(NEAREST, len(points) - 1) + 1)[1], np.intp)[:, 1:].copy()
+    distances, near = KDTree(points).query(points, min(NEAREST, len(points) - 1) + 1)
+    near = np.asarray(near, np.intp)[:, 1:].copy()
     normals, vectors = np.empty_like(points), np.empty_like(points)
     clouds.plane_normals(points, near, normals)
     star, counts, gaps = np.empty_like(near), np.empty(len(points), np.intp), np.empty(len(points))
-    clouds.stars(points, normals, near, N_BLOCKS, star, counts, gaps)
+    clouds.long_axes(points, normals, star, 0 * counts, vectors)
+    clouds.stars(points, normals, vectors, 0.0, near, N_BLOCKS, star, counts, gaps)
+    normals *= _agreeing_signs(points, normals, _links(star, counts))[:, None]
+    clouds.long_axes(points, normals, star, counts, vectors)
+    clouds.stars(points, normals, vectors, SKEW, near, N_BLOCKS, star, counts, gaps)
     links = _links(star, counts)
-    clouds.star_area_vectors(points, normals, star, counts, vectors)
-    signs = _agreeing_signs(points, normals, links)
     offsets, neighbours = links.indptr.astype(np.int32), links.indices.astype(np.int32)
-    smooth = np.empty_like(normals)
+    clouds.star_area_vectors(points, normals, star, counts, vectors)
     for _ in range(2):
-        stencils.ring_directions(vectors * signs[:, None], False, offsets, neighbours, smooth)
-        vectors, signs = smooth.copy(), np.ones(len(points))
-    spacing = _spacing(points, near, offsets, neighbours)
-    return balls.Sheet(points, smooth, offsets, neighbours, spacing, True), gaps > BORDER_GAP
+        stencils.ring_directions(vectors, False, offsets, neighbours, normals)
+        vectors = normals.copy()
+    sheet = balls.Sheet(points, normals, offsets, neighbours, _spacing(points, near, offsets, neighbours), True)
+    return Cloud(sheet, agreed_triangles(points, star, counts, distances[:, -1]), gaps > BORDER_GAP)
 
 
 def _spacing(points: Floats, near: Indices, offsets: NDArray[np.int32], neighbours: NDArray[np.int32]) -> Floats:

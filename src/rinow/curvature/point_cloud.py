@@ -9,15 +9,25 @@ from numpy.typing import ArrayLike, NDArray
 
 from rinow._arrays import as_floats, as_points
 from rinow._executor import SerialExecutor
-from rinow.curvature.cloud_sheet import cloud_sheet
+from rinow.curvature.cloud_sheet import Cloud, cloud_sheet
+from rinow.curvature.estimate import Estimate
 from rinow.curvature.patch_tasks import Tasks
 from rinow.curvature.scale import Ladder, sample
-from rinow.curvature.sectional import EDGE_RINGS, QUALITIES, blended_patches, rings_around, shrinkage
+from rinow.curvature.sectional import (
+    EDGE_CALIBRATION,
+    EDGE_RINGS,
+    QUALITIES,
+    blended_patches,
+    corrected,
+    rings_around,
+    shrinkage,
+)
+from rinow.curvature.sheet import morton_order
 from rinow.curvature.status import VertexStatus
-from rinow.curvature.stencils import N_BLOCKS, empty_frames
 from rinow.curvature.surface import SurfaceCurvature
+from rinow.curvature.unresolved import with_detail
 from rinow.errors import InvalidInputError
-from rinow.kernels import quadrics, stencils
+from rinow.mesh import TriangleMesh
 
 __all__ = ["point_cloud_curvature"]
 
@@ -89,40 +99,44 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     if len(distinct) < LEAST_POINTS:
         return _assembled(np.full((len(P), 4), np.nan), np.full((2, len(P), 3), np.nan), status)
     unit = 1.0 / float(np.ptp(distinct, axis=0).max())
-    values, directions, at_border = _of_distinct(
-        (distinct - distinct[0]) * unit, None if radius is None else float(radius) * unit
-    )
+    order = morton_order(distinct)
+    cloud = cloud_sheet((distinct[order] - distinct[0]) * unit)
+    found = _of_cloud(cloud, None if radius is None else float(radius) * unit)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    where, rows = np.flatnonzero(finite), rank[place.ravel()]
+    values = np.column_stack([found.gaussian, found.mean, found.spread, found.radius])
     values *= np.array([unit**2, unit, unit**2, 1.0 / unit])
-    where, rows = np.flatnonzero(finite), place.ravel()
     everywhere, both = np.full((len(P), 4), np.nan), np.full((2, len(P), 3), np.nan)
-    everywhere[where], both[:, where] = values[rows], directions[:, rows]
+    everywhere[where], both[:, where] = values[rows], np.stack([found.direction1, found.direction2])[:, rows]
     known = np.isfinite(everywhere[:, 0])
     border = np.zeros(len(P), np.bool_)
-    border[where] = at_border[rows]
+    border[where] = cloud.at_border[rows]
     status[known] = np.where(border[known], VertexStatus.BOUNDARY, VertexStatus.OK)
     return _assembled(everywhere, both, status)
 
 
-def _of_distinct(points: Floats, radius: float | None) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """K, H, standard error of K and radius (n, 4), principal directions (2, n, 3), and which points are at a border."""
-    sheet, at_border = cloud_sheet(points)
-    quality = QUALITIES["best"]
+def _of_cloud(cloud: Cloud, radius: float | None) -> Estimate:
+    """The estimate of fits over the links of a cloud, with what its triangles know better."""
+    sheet, quality = cloud.sheet, QUALITIES["best"]
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
     tasks = Tasks(SerialExecutor())
     samples = sample(sheet, ladder, quality.selects, tasks)
-    at_edge = rings_around(sheet, at_border, EDGE_RINGS)
-    out, direction1, direction2 = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)[:3]
+    at_edge = rings_around(sheet, cloud.at_border, EDGE_RINGS)
+    out, direction1, direction2, noise = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)
     out[:, 0] *= shrinkage(samples, out)
-    values = np.column_stack([out[:, 0], out[:, 1], quality.calibration * np.sqrt(out[:, 2]), out[:, 3]])
-    missing = np.flatnonzero(~np.isfinite(values[:, 0]))
-    values[missing] = np.nan
-    if len(missing) and radius is None:
-        frames = empty_frames(len(missing))
-        rings = stencils.Surface(sheet.vertices, sheet.normals, sheet.offsets, sheet.neighbours, True)
-        quadrics.ring_quadrics(missing, rings, True, N_BLOCKS, frames)
-        values[missing, 0], values[missing, 1] = frames.k1 * frames.k2, 0.5 * (frames.k1 + frames.k2)
-        direction1[missing], direction2[missing] = frames.direction1, frames.direction2
-    return values, np.stack([direction1, direction2]), at_border
+    gaussian, mean, risk, reach = out[:, :4].T.copy()
+    half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
+    spread = quality.calibration * np.sqrt(risk)
+    spread[cloud.at_border] *= EDGE_CALIBRATION
+    fit = Estimate(
+        gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, np.sqrt(noise), sheet.spacing
+    )
+    if not len(cloud.faces):
+        return fit
+    mesh = TriangleMesh(sheet.vertices, cloud.faces)
+    corrected(mesh, fit, radius is None)
+    return fit if radius is not None else with_detail(mesh, fit)
 
 
 def _assembled(values: Floats, directions: Floats, status: NDArray[np.uint8]) -> SurfaceCurvature:

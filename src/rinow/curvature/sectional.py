@@ -21,7 +21,9 @@ from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencil
 from rinow.mesh import TriangleMesh
 from rinow.topology import Topology
 
-__all__ = ["EDGE_RINGS", "QUALITIES", "blended_patches", "rings_around", "sectional", "shrinkage"]
+__all__ = [
+    "EDGE_CALIBRATION", "EDGE_RINGS", "QUALITIES", "blended_patches", "corrected", "rings_around", "sectional", "shrinkage",
+]  # fmt: skip
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -129,14 +131,19 @@ def sectional(
     spread[mesh.topology.vertex_is_boundary] *= EDGE_CALIBRATION
     estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
     estimate.put(on_edge, ends)
-    _doubt_ends(mesh, estimate)
-    if radius is None:
-        _fill_in(mesh, estimate)
-        _doubt_ends(mesh, estimate)
-    _flatten(estimate, _flat_vertices(mesh))
+    corrected(mesh, estimate, radius is None)
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
     return estimate
+
+
+def corrected(mesh: TriangleMesh, estimate: Estimate, fill: bool) -> None:
+    """Correct an estimate where faces know better: at ends, where no patch has a fit, and where the metric is flat."""
+    _doubt_ends(mesh, estimate)
+    if fill:
+        _fill_in(mesh, estimate)
+        _doubt_ends(mesh, estimate)
+    _flatten(estimate, _flat_vertices(mesh))
 
 
 def blended_patches(

@@ -72,19 +72,20 @@ def clip(x, y, owner, n, px, py, who, cell, owners):
 
 
 @kernel
-def star_of(v, near, points, normal, plane, work):
+def star_of(v, near, points, normal, t, skew, plane, work):
     """Write the owners of the sides of the Voronoi cell of v, around the normal; how many.
 
-    These are the neighbours in the Delaunay triangulation of the points over the tangent plane.
+    These are the neighbours in the Delaunay triangulation of the points over the tangent plane, sheared by `skew`
+    along its unit vector t.
     """
     x, y, owner, cell, owners = work
-    t = monge.some_tangent(normal)
     b = monge.cross(normal, t)
     far = 0.0
     for i in range(near.shape[0]):
         w = near[i]
         dx, dy, dz = points[w, 0] - points[v, 0], points[w, 1] - points[v, 1], points[w, 2] - points[v, 2]
-        plane[i, 0], plane[i, 1] = t[0] * dx + t[1] * dy + t[2] * dz, b[0] * dx + b[1] * dy + b[2] * dz
+        plane[i, 1] = b[0] * dx + b[1] * dy + b[2] * dz
+        plane[i, 0] = t[0] * dx + t[1] * dy + t[2] * dz + skew * plane[i, 1]
         far = max(far, dx * dx + dy * dy + dz * dz)
     size = BOX * math.sqrt(far)
     x[0], x[1], x[2], x[3] = -size, size, size, -size
@@ -98,7 +99,7 @@ def star_of(v, near, points, normal, plane, work):
 
 
 @parallel_kernel
-def stars(points, normals, near, n_blocks, out, counts, gaps):
+def stars(points, normals, tangents, skew, near, n_blocks, out, counts, gaps):
     """Write to out[v] the neighbours of v around its normal, how many, and the widest angle between two of them."""
     k = near.shape[1]
     for block in prange(n_blocks):
@@ -108,7 +109,8 @@ def stars(points, normals, near, n_blocks, out, counts, gaps):
         n_points = points.shape[0]
         for v in range(n_points * block // n_blocks, n_points * (block + 1) // n_blocks):
             normal = (normals[v, 0], normals[v, 1], normals[v, 2])
-            n = star_of(v, near[v], points, normal, plane, work) if normal != (0.0, 0.0, 0.0) else 0
+            t = (tangents[v, 0], tangents[v, 1], tangents[v, 2])
+            n = star_of(v, near[v], points, normal, t, skew, plane, work) if normal != (0.0, 0.0, 0.0) else 0
             counts[v], gaps[v], before, first = 0, 0.0, 0.0, 0.0
             for j in range(n):
                 i = work[2][j]
@@ -138,6 +140,35 @@ def star_area_vectors(points, normals, star, counts, out):
             if cx * nx + cy * ny + cz * nz > 0.0:
                 sx, sy, sz = sx + cx, sy + cy, sz + cz
         out[v, 0], out[v, 1], out[v, 2] = sx, sy, sz
+
+
+@parallel_kernel
+def long_axes(points, normals, star, counts, out):
+    """Write the tangent along which the neighbours in each star are farthest, in the mean square; any for none."""
+    for v in prange(points.shape[0]):
+        n = (normals[v, 0], normals[v, 1], normals[v, 2])
+        t = monge.some_tangent(n)
+        b = monge.cross(n, t)
+        xx = xy = yy = 0.0
+        for j in range(counts[v]):
+            p = star[v, j]
+            dx, dy, dz = points[p, 0] - points[v, 0], points[p, 1] - points[v, 1], points[p, 2] - points[v, 2]
+            x, y = t[0] * dx + t[1] * dy + t[2] * dz, b[0] * dx + b[1] * dy + b[2] * dz
+            xx, xy, yy = xx + x * x, xy + x * y, yy + y * y
+        angle = 0.5 * math.atan2(2.0 * xy, xx - yy)
+        axis = monge.combination(math.cos(angle), t, math.sin(angle), b)
+        out[v, 0], out[v, 1], out[v, 2] = axis[0], axis[1], axis[2]
+
+
+@kernel
+def take_triangles(sides, n_sides, taken):
+    """Take triangles in their order unless a directed side of theirs, by its number, is in one taken before."""
+    used = np.zeros(n_sides, np.bool_)
+    for f in range(sides.shape[0]):
+        a, b, c = sides[f, 0], sides[f, 1], sides[f, 2]
+        taken[f] = not (used[a] or used[b] or used[c])
+        if taken[f]:
+            used[a] = used[b] = used[c] = True
 
 
 @kernel

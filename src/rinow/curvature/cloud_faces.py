@@ -1,0 +1,60 @@
+"""Triangles of a point cloud: those on which the stars of its points agree."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.kernels import clouds
+
+__all__ = ["agreed_triangles"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+def agreed_triangles(points: Floats, star: Indices, counts: Indices, reach: Floats) -> Indices:
+    """Triangles of the stars of points, as many as fit together.
+
+    Parameters
+    ----------
+    points : (n, 3) ndarray of float
+        Positions.
+    star : (n, k) ndarray of intp
+        Row v begins with the counts[v] neighbours of point v in the order around its normal.
+    counts : (n,) ndarray of intp
+        Numbers of neighbours.
+    reach : (n,) ndarray of float
+        Distance up to which the points around each one were looked at.
+
+    Returns
+    -------
+    faces : (n_faces, 3) ndarray of intp
+        No directed side is in two of them, so each edge is in two at most and these agree in orientation.
+
+    Notes
+    -----
+    A triangle of two successive neighbours is known to be Delaunay's if its circle, which may extend to its diameter
+    from the point, lies within the reach.  Triangles in the stars of all three corners are taken first, then those of
+    two, then of one, small circles before large ones, unless they have a side in common, in its direction, with one
+    taken before: stars laid over different planes disagree about four points on a circle.
+    """
+    owner, place = np.nonzero(np.arange(star.shape[1]) < counts[:, None])
+    corners = np.stack([owner, star[owner, place], star[owner, (place + 1) % counts[owner]]], axis=1)
+    corners = corners[_circle_diameters(points[corners]) < reach[owner]]
+    first = corners.argmin(axis=1)
+    corners = np.take_along_axis(corners, (first[:, None] + np.arange(3)) % 3, axis=1)
+    faces, votes = np.unique(corners, axis=0, return_counts=True)
+    faces = faces[np.lexsort((_circle_diameters(points[faces]), -votes))]
+    sides, numbers = np.unique(faces * len(points) + np.roll(faces, -1, axis=1), return_inverse=True)
+    taken = np.empty(len(faces), np.bool_)
+    clouds.take_triangles(numbers.reshape(-1, 3), len(sides), taken)
+    return faces[taken]
+
+
+def _circle_diameters(triangles: Floats) -> Floats:
+    """Diameters of the circles through three points each; inf if these are on a line."""
+    sides = np.roll(triangles, -1, axis=1) - triangles
+    double_area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    product = np.prod(np.linalg.norm(sides, axis=2), axis=1)
+    return np.divide(product, double_area, out=np.full(len(triangles), np.inf), where=double_area > 0.0)
