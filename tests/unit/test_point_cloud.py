@@ -6,7 +6,7 @@ import pytest
 import rinow
 import shapes
 from rinow import VertexStatus
-from rinow.curvature.cloud_sheet import cloud_sheet
+from rinow.curvature.cloud_sheet import cloud_sheet, nearest_points
 from rinow.errors import InvalidInputError
 
 SHAPES = {
@@ -87,7 +87,7 @@ def test_radius_is_used():
 
 def test_stars_are_those_of_the_triangulation():
     shape = shapes.icosphere(3)
-    sheet, faces, at_border = cloud_sheet(shape.vertices)
+    sheet, faces, at_border = cloud_sheet(shape.vertices, *nearest_points(shape.vertices))
     mesh = rinow.TriangleMesh(shape.vertices, shape.faces)
     assert not at_border.any()
     np.testing.assert_array_equal(np.diff(sheet.offsets), np.diff(mesh.topology.neighbour_offsets))

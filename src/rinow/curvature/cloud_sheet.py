@@ -14,7 +14,7 @@ from rinow.curvature.cloud_faces import agreed_triangles
 from rinow.curvature.stencils import N_BLOCKS, NEEDLES
 from rinow.kernels import balls, clouds, stencils
 
-__all__ = ["Cloud", "cloud_sheet"]
+__all__ = ["NEAREST", "Cloud", "cloud_sheet", "nearest_points"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -37,15 +37,19 @@ class Cloud(NamedTuple):
     at_border: Bools
 
 
-def cloud_sheet(points: Floats) -> Cloud:
-    """The sheet of a cloud of distinct finite points, in their order.
+def nearest_points(points: Floats) -> tuple[Floats, Indices]:
+    """(n_points, k): distances and indices of the 36 points nearest to each one, or of all if there are fewer."""
+    distances, near = KDTree(points).query(points, min(NEAREST, len(points) - 1) + 1)
+    return distances[:, 1:].copy(), np.asarray(near, np.intp)[:, 1:].copy()
+
+
+def cloud_sheet(points: Floats, distances: Floats, near: Indices) -> Cloud:
+    """The sheet of a cloud of distinct finite points, in their order, with their nearest ones.
 
     Neighbours are those of the Delaunay triangulation of the nearest points, laid over the plane of least squares.
     Normals are the area vectors of these stars, averaged over the neighbours; their signs are carried along the tree
     on which normals turn least, outwards at the highest point of each component.
     """
-    distances, near = KDTree(points).query(points, min(NEAREST, len(points) - 1) + 1)
-    near = np.asarray(near, np.intp)[:, 1:].copy()
     normals, vectors = np.empty_like(points), np.empty_like(points)
     clouds.plane_normals(points, near, normals)
     star, counts, gaps = np.empty_like(near), np.empty(len(points), np.intp), np.empty(len(points))
@@ -60,19 +64,18 @@ def cloud_sheet(points: Floats) -> Cloud:
     for _ in range(2):
         stencils.ring_directions(vectors, False, offsets, neighbours, normals)
         vectors = normals.copy()
-    sheet = balls.Sheet(points, normals, offsets, neighbours, _spacing(points, near, offsets, neighbours), True)
+    sheet = balls.Sheet(points, normals, offsets, neighbours, _spacing(points, distances, offsets, neighbours), True)
     return Cloud(sheet, agreed_triangles(points, star, counts, distances[:, -1]), gaps > BORDER_GAP)
 
 
-def _spacing(points: Floats, near: Indices, offsets: NDArray[np.int32], neighbours: NDArray[np.int32]) -> Floats:
+def _spacing(points: Floats, distances: Floats, offsets: NDArray[np.int32], neighbours: NDArray[np.int32]) -> Floats:
     """Mean distance of neighbours, between the edge of equilateral triangles of the same density and some of it.
 
     The same rule as for meshes: rows of points need the larger one, clusters must not get too small a one.
     """
     edges, sums = np.empty(len(points)), np.empty(len(points))
     stencils.mean_edge_lengths(points, offsets, neighbours, edges)
-    reach = np.linalg.norm(points[near[:, -1]] - points, axis=1)
-    even = np.sqrt(2.0 / np.sqrt(3.0) * np.pi / (near.shape[1] + 0.5)) * reach
+    even = np.sqrt(2.0 / np.sqrt(3.0) * np.pi / (distances.shape[1] + 0.5)) * distances[:, -1]
     local = np.clip(edges, even, NEEDLES * even)
     stencils.ring_sums(local, offsets, neighbours, sums)
     return sums / (np.diff(offsets) + 1)

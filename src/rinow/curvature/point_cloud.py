@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow._arrays import as_floats, as_points
-from rinow._executor import SerialExecutor
-from rinow.curvature.cloud_sheet import Cloud, cloud_sheet
-from rinow.curvature.estimate import Estimate
-from rinow.curvature.patch_tasks import Tasks
-from rinow.curvature.scale import Ladder, sample
-from rinow.curvature.sectional import (
-    EDGE_CALIBRATION,
-    EDGE_RINGS,
-    QUALITIES,
-    blended_patches,
-    corrected,
-    rings_around,
-    shrinkage,
-)
+from rinow.curvature.cloud_fit import cloud_estimate
+from rinow.curvature.cloud_sheet import cloud_sheet, nearest_points
+from rinow.curvature.cloud_strays import stray_points
+from rinow.curvature.estimate import Estimate, undefined
 from rinow.curvature.sheet import morton_order
 from rinow.curvature.status import VertexStatus
-from rinow.curvature.surface import SurfaceCurvature
-from rinow.curvature.unresolved import with_detail
+from rinow.curvature.surface import SurfaceCurvature, assembled, relabelled, rescaled
 from rinow.errors import InvalidInputError
-from rinow.mesh import TriangleMesh
 
 __all__ = ["point_cloud_curvature"]
 
@@ -92,66 +80,37 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
         value = as_floats(radius, "radius")
         if value.ndim or not 0.0 < value < np.inf:
             raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
-    status = np.full(len(P), VertexStatus.UNRESOLVED, np.uint8)
     finite = np.isfinite(P).all(axis=1)
-    status[~finite] = VertexStatus.NONFINITE
     distinct, place = np.unique(P[finite], axis=0, return_inverse=True)
-    if len(distinct) < LEAST_POINTS:
-        return _assembled(np.full((len(P), 4), np.nan), np.full((2, len(P), 3), np.nan), status)
-    unit = 1.0 / float(np.ptp(distinct, axis=0).max())
-    order = morton_order(distinct)
-    cloud = cloud_sheet((distinct[order] - distinct[0]) * unit)
-    found = _of_cloud(cloud, None if radius is None else float(radius) * unit)
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    where, rows = np.flatnonzero(finite), rank[place.ravel()]
-    values = np.column_stack([found.gaussian, found.mean, found.spread, found.radius])
-    values *= np.array([unit**2, unit, unit**2, 1.0 / unit])
-    everywhere, both = np.full((len(P), 4), np.nan), np.full((2, len(P), 3), np.nan)
-    everywhere[where], both[:, where] = values[rows], np.stack([found.direction1, found.direction2])[:, rows]
-    known = np.isfinite(everywhere[:, 0])
-    border = np.zeros(len(P), np.bool_)
-    border[where] = cloud.at_border[rows]
-    status[known] = np.where(border[known], VertexStatus.BOUNDARY, VertexStatus.OK)
-    return _assembled(everywhere, both, status)
-
-
-def _of_cloud(cloud: Cloud, radius: float | None) -> Estimate:
-    """The estimate of fits over the links of a cloud, with what its triangles know better."""
-    sheet, quality = cloud.sheet, QUALITIES["best"]
-    ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
-    tasks = Tasks(SerialExecutor())
-    samples = sample(sheet, ladder, quality.selects, tasks)
-    at_edge = rings_around(sheet, cloud.at_border, EDGE_RINGS)
-    out, direction1, direction2, noise = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)
-    out[:, 0] *= shrinkage(samples, out)
-    gaussian, mean, risk, reach = out[:, :4].T.copy()
-    half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
-    spread = quality.calibration * np.sqrt(risk)
-    spread[cloud.at_border] *= EDGE_CALIBRATION
-    fit = Estimate(
-        gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, np.sqrt(noise), sheet.spacing
+    extent = float(np.ptp(distinct, axis=0).max()) if len(distinct) > 1 else 1.0
+    estimate, status, n_strays = _of_distinct(
+        (distinct - distinct[:1]) / extent, None if radius is None else float(radius) / extent
     )
-    if not len(cloud.faces):
-        return fit
-    mesh = TriangleMesh(sheet.vertices, cloud.faces)
-    corrected(mesh, fit, radius is None)
-    return fit if radius is not None else with_detail(mesh, fit)
+    rows = np.full(len(P), len(distinct), np.intp)  # the last row is for the other points
+    rows[finite] = place.ravel()
+    result = relabelled(rescaled(assembled(estimate, status, "point_cloud"), 1.0 / extent), rows)
+    strays = (f"{n_strays} points lie beside the surface of those around them and were left out (UNRESOLVED).",)
+    return replace(result, notes=(NOTE, *strays[: bool(n_strays)]))
 
 
-def _assembled(values: Floats, directions: Floats, status: NDArray[np.uint8]) -> SurfaceCurvature:
-    """The result with the quantities that follow from K and H."""
-    gaussian, mean, spread, radius = values.T.copy()
-    half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
-    k1, k2 = mean + half, mean - half
-    directions[:, np.isnan(gaussian)] = np.nan
-    fields: dict[str, Any] = {
-        "shape_index": 2.0 / np.pi * np.arctan2(k1 + k2, k1 - k2),
-        "curvedness": np.sqrt(0.5 * (k1 * k1 + k2 * k2)),
-        "direction1": directions[0],
-        "direction2": directions[1],
-    }
-    return SurfaceCurvature(
-        gaussian=gaussian, mean=mean, k1=k1, k2=k2, status=status, radius=radius, spread=spread, method="point_cloud",
-        notes=(NOTE,), **fields,
-    )  # fmt: skip
+def _of_distinct(points: Floats, radius: float | None) -> tuple[Estimate, NDArray[np.uint8], int]:
+    """The estimate and status of distinct points and, in a last row, of those not finite; how many strays there are."""
+    n = len(points)
+    everywhere, status = undefined(n + 1), np.full(n + 1, VertexStatus.UNRESOLVED, np.uint8)
+    status[n] = VertexStatus.NONFINITE
+    if n < LEAST_POINTS:
+        return everywhere, status, 0
+    order = morton_order(points).astype(np.intp)
+    nearest = nearest_points(points[order])
+    is_stray = stray_points(points[order], *nearest)
+    if is_stray.any():
+        order = order[~is_stray]
+        if len(order) < LEAST_POINTS:
+            return everywhere, status, int(is_stray.sum())
+        nearest = nearest_points(points[order])
+    cloud = cloud_sheet(points[order], *nearest)
+    found = cloud_estimate(cloud, radius)
+    everywhere.fill(order, found)
+    status[order] = np.where(cloud.at_border, VertexStatus.BOUNDARY, VertexStatus.OK)
+    status[order[~np.isfinite(found.gaussian)]] = VertexStatus.UNRESOLVED
+    return everywhere, status, int(is_stray.sum())

@@ -22,8 +22,15 @@ from rinow.mesh import TriangleMesh
 from rinow.topology import Topology
 
 __all__ = [
-    "EDGE_CALIBRATION", "EDGE_RINGS", "QUALITIES", "blended_patches", "corrected", "rings_around", "sectional", "shrinkage",
-]  # fmt: skip
+    "EDGE_CALIBRATION",
+    "EDGE_RINGS",
+    "QUALITIES",
+    "blended_patches",
+    "corrected",
+    "rings_around",
+    "sectional",
+    "shrinkage",
+]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]

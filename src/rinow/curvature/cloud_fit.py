@@ -1,0 +1,59 @@
+"""Curvature of a cloud from fits over its links, with what its triangles know better."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rinow._executor import SerialExecutor
+from rinow.curvature.cloud_sheet import Cloud
+from rinow.curvature.estimate import Estimate
+from rinow.curvature.patch_tasks import Tasks
+from rinow.curvature.scale import Ladder, sample
+from rinow.curvature.sectional import (
+    EDGE_CALIBRATION,
+    EDGE_RINGS,
+    QUALITIES,
+    blended_patches,
+    corrected,
+    rings_around,
+    shrinkage,
+)
+from rinow.curvature.unresolved import with_detail
+from rinow.mesh import TriangleMesh
+
+__all__ = ["cloud_estimate"]
+
+
+def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
+    """The estimate of `sectional` for a cloud, in the order of its sheet.
+
+    Parameters
+    ----------
+    cloud : Cloud
+        The cloud.
+    radius : float or None
+        Radius of all balls, in the unit of length; by default the data decide.
+
+    Notes
+    -----
+    Edge lengths are not examined: the diagonals of a Delaunay triangulation change along lines, where angle defects
+    do not converge.
+    """
+    sheet, quality, tasks = cloud.sheet, QUALITIES["best"], Tasks(SerialExecutor())
+    ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
+    samples = sample(sheet, ladder, quality.selects, tasks)
+    at_edge = rings_around(sheet, cloud.at_border, EDGE_RINGS)
+    out, direction1, direction2, noise = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)
+    out[:, 0] *= shrinkage(samples, out)
+    gaussian, mean, risk, reach = out[:, :4].T.copy()
+    half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
+    spread = quality.calibration * np.sqrt(risk)
+    spread[cloud.at_border] *= EDGE_CALIBRATION
+    fit = Estimate(
+        gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, np.sqrt(noise), sheet.spacing
+    )
+    if len(cloud.faces):
+        mesh = TriangleMesh(sheet.vertices, cloud.faces)
+        corrected(mesh, fit, radius is None)
+        fit = fit if radius is not None else with_detail(mesh, fit)
+    return fit
