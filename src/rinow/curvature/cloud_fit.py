@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rinow._executor import SerialExecutor
 from rinow.curvature.cloud_sheet import Cloud
@@ -19,9 +20,14 @@ from rinow.curvature.sectional import (
     shrinkage,
 )
 from rinow.curvature.unresolved import with_detail
+from rinow.kernels import stencils
 from rinow.mesh import TriangleMesh
 
 __all__ = ["cloud_estimate"]
+
+UNDECIDED = 1.5
+"""Standard error times radius² above which nothing is known, as for metric spaces: points on surfaces stay below 1,
+those that fill a part of space have 2 to 25."""
 
 
 def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
@@ -52,8 +58,19 @@ def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
     fit = Estimate(
         gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, np.sqrt(noise), sheet.spacing
     )
-    if len(cloud.faces):
-        mesh = TriangleMesh(sheet.vertices, cloud.faces)
+    mesh = TriangleMesh(sheet.vertices, cloud.faces) if len(cloud.faces) else None
+    if mesh is not None:
         corrected(mesh, fit, radius is None)
-        fit = fit if radius is not None else with_detail(mesh, fit)
+    if radius is not None:
+        return fit
+    fit = fit if mesh is None else with_detail(mesh, fit)
+    fit.gaussian[(fit.spread * fit.radius**2 > UNDECIDED) | _too_curved(cloud, fit)] = np.nan
     return fit
+
+
+def _too_curved(cloud: Cloud, fit: Estimate) -> NDArray[np.bool_]:
+    """(n_points,): neighbours are farther, in the mean, than any two points of the smaller circle of curvature."""
+    sheet = cloud.sheet
+    lengths = np.empty(len(sheet.vertices))
+    stencils.mean_edge_lengths(sheet.vertices, sheet.offsets, sheet.neighbours, lengths)
+    return np.fmax(np.abs(fit.k1), np.abs(fit.k2)) * lengths > 2.0

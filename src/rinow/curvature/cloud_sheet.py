@@ -25,6 +25,9 @@ NEAREST = 36
 SKEW = 0.1
 """Shear of the plane along the long axis of a star.  Rectangles of rows of points have two Delaunay triangulations;
 all are cut along the same one of their diagonals then, as in a structured mesh."""
+ROUND = 0.2
+"""Mean distance of a middle from the tangent planes, over that from the points, that shows an inside: 1 for a sphere,
+0.4 for a torus, 0 for the graph of a function."""
 BORDER_GAP = 2.8
 """Angle between neighbours, in radians, that tells a border: inside, Delaunay triangles have less."""
 
@@ -48,7 +51,7 @@ def cloud_sheet(points: Floats, distances: Floats, near: Indices) -> Cloud:
 
     Neighbours are those of the Delaunay triangulation of the nearest points, laid over the plane of least squares.
     Normals are the area vectors of these stars, averaged over the neighbours; their signs are carried along the tree
-    on which normals turn least, outwards at the highest point of each component.
+    on which normals turn least; see `_outward` for that of the whole.
     """
     normals, vectors = np.empty_like(points), np.empty_like(points)
     clouds.plane_normals(points, near, normals)
@@ -93,18 +96,39 @@ def _links(star: Indices, counts: Indices) -> csr_array:
 
 
 def _agreeing_signs(points: Floats, normals: Floats, links: csr_array) -> Floats:
-    """Signs with which normals agree between neighbours, along the tree where they turn least."""
+    """Signs with which normals agree between neighbours, along the tree where they turn least, and point outwards."""
     rows = np.repeat(np.arange(len(points)), np.diff(links.indptr))
     turn = 1.0 - np.abs(np.sum(normals[rows] * normals[links.indices], axis=1))
     # Steps along the surface are preferred to those across a gap between two sheets.
     step = points[links.indices] - points[rows]
     rise = np.abs(np.sum(step * normals[rows], axis=1)) / np.maximum(np.linalg.norm(step, axis=1), 1e-300)
     tree = minimum_spanning_tree(csr_array((1e-6 + turn + rise, links.indices, links.indptr), shape=links.shape))
-    signs = np.ones(len(points))
-    n_parts, labels = connected_components(tree, directed=False)
-    top = np.lexsort((-points[:, 2], labels))
-    for root in top[np.searchsorted(labels[top], np.arange(n_parts))]:
-        order, parents = breadth_first_order(tree, root, directed=False)
-        signs[root] = 1.0 if normals[root, 2] >= 0.0 else -1.0
-        clouds.carry_signs(order, parents, normals, signs)
-    return signs
+    labels = connected_components(tree, directed=False)[1]
+    signs = np.empty(len(points))
+    clouds.carry_signs(*_rooted(tree, np.unique(labels, return_index=True)[1]), normals, signs)
+    return signs * _outward(points, normals * signs[:, None], labels)[labels]
+
+
+def _rooted(forest: csr_array, roots: Indices) -> tuple[Indices, Indices]:
+    """The nodes of a forest, each after its parent, and their parents; those of the roots are one more node."""
+    n = forest.shape[0]
+    at = coo_array(forest)
+    rows, columns = np.append(at.row, np.full(len(roots), n)), np.append(at.col, roots)
+    tree = csr_array((np.ones(len(rows)), (rows, columns)), shape=(n + 1, n + 1))
+    order, parents = breadth_first_order(tree, n, directed=False)
+    return order[1:], parents
+
+
+def _outward(points: Floats, normals: Floats, labels: Indices) -> Floats:
+    """(n_parts,): signs with which the normals of each part point away from its middle, for the mean of its points.
+
+    Where that is about 0, as on the graph of a function, they point upwards at the highest point.
+    """
+    counts = np.bincount(labels)
+    middles = np.stack([np.bincount(labels, x) for x in points.T], axis=1) / counts[:, None]
+    away = points - middles[labels]
+    along = np.bincount(labels, np.sum(away * normals, axis=1))
+    share = along / np.maximum(np.bincount(labels, np.linalg.norm(away, axis=1)), np.finfo(float).tiny)
+    by_height = np.lexsort((points[:, 2], labels))
+    upward = normals[by_height[np.cumsum(counts) - 1], 2]
+    return np.where(np.where(np.abs(share) > ROUND, share, upward) < 0.0, -1.0, 1.0)

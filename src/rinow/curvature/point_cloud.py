@@ -57,13 +57,21 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     -----
     Each point is joined to its neighbours in the Delaunay triangulation of the 36 nearest points over their plane of
     least squares, and they to it; balls grow over these links as they do over the edges of a mesh, and the same
-    polynomials over osculating tori are fitted to them.  The signs of the normals, and with them those of the mean
-    and the principal curvatures, cannot be known from points: they agree between neighbours and are outward at the
-    highest point of each component, which is right for closed surfaces.  On a surface with one side only they change
-    along a cut.  The Gaussian curvature does not depend on them.
+    polynomials over osculating tori are fitted to them.  The triangles on which the neighbours agree tell, as in a
+    mesh, where the surface is flat and where fits over large balls have taken detail for noise.
+
+    The signs of the normals, and with them those of the mean and the principal curvatures, cannot be known from
+    points: they agree between neighbours.  Those of a connected part point away from its middle, which is right for
+    closed surfaces, or, where that does not decide, as on a terrain, upwards at its highest point.  On a surface with
+    one side only they change along a cut.  The Gaussian curvature does not depend on them.
+
+    Points far from all others, and single points beside the quadric of least moduli through those around them, by
+    eight standard deviations of the noise and a quarter of the spacing, are left out: they are UNRESOLVED.  So are
+    points whose standard error exceeds 1.5/radius², as it does where points fill a part of space or follow a curve,
+    and near creases.
 
     Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Sheets nearer to each
-    other than some spacings are taken for one.  Lengths from 1e-140 to 1e140 neither
+    other than some three spacings are taken for one.  Lengths from 1e-140 to 1e140 neither
     overflow nor underflow.
 
     Examples

@@ -11,6 +11,8 @@ FLAT = 1e-12
 """Share of the largest variance that the second one must have for a plane to be determined."""
 BOX = 4.0
 """Half side of the square that bounds a Voronoi cell, in distances of the farthest neighbour looked at."""
+LEVEL = 0.3
+"""Points nearer to the normal, by the square of the sine of the angle at the point, are those of another sheet."""
 OUTSIDE = -1
 """Owner of the sides of that square."""
 
@@ -84,9 +86,12 @@ def star_of(v, near, points, normal, t, skew, plane, work):
     for i in range(near.shape[0]):
         w = near[i]
         dx, dy, dz = points[w, 0] - points[v, 0], points[w, 1] - points[v, 1], points[w, 2] - points[v, 2]
-        plane[i, 1] = b[0] * dx + b[1] * dy + b[2] * dz
-        plane[i, 0] = t[0] * dx + t[1] * dy + t[2] * dz + skew * plane[i, 1]
-        far = max(far, dx * dx + dy * dy + dz * dz)
+        px, py = t[0] * dx + t[1] * dy + t[2] * dz, b[0] * dx + b[1] * dy + b[2] * dz
+        distance2 = dx * dx + dy * dy + dz * dz
+        if px * px + py * py < LEVEL * distance2:
+            px = py = 0.0
+        plane[i, 0], plane[i, 1] = px + skew * py, py
+        far = max(far, distance2)
     size = BOX * math.sqrt(far)
     x[0], x[1], x[2], x[3] = -size, size, size, -size
     y[0], y[1], y[2], y[3] = -size, -size, size, size
@@ -173,8 +178,10 @@ def take_triangles(sides, n_sides, taken):
 
 @kernel
 def carry_signs(order, parents, normals, signs):
-    """Write to signs the sign that each normal needs to agree with its parent's, whose sign is known before."""
-    for i in range(1, order.shape[0]):
-        v, p = order[i], parents[order[i]]
-        cosine = normals[v, 0] * normals[p, 0] + normals[v, 1] * normals[p, 1] + normals[v, 2] * normals[p, 2]
-        signs[v] = signs[p] if cosine >= 0.0 else -signs[p]
+    """Write the sign that each normal needs to agree with its parent's; 1 where the parent is no point."""
+    for v in order:
+        p = parents[v]
+        signs[v] = 1.0
+        if p < signs.shape[0]:
+            cosine = normals[v, 0] * normals[p, 0] + normals[v, 1] * normals[p, 1] + normals[v, 2] * normals[p, 2]
+            signs[v] = signs[p] if cosine >= 0.0 else -signs[p]
