@@ -15,7 +15,9 @@ from rinow.curvature.sectional import (
     EDGE_RINGS,
     QUALITIES,
     blended_patches,
-    corrected,
+    flat_vertices,
+    flatten,
+    repair_ends,
     rings_around,
     shrinkage,
 )
@@ -60,7 +62,10 @@ def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
     )
     mesh = TriangleMesh(sheet.vertices, cloud.faces) if len(cloud.faces) else None
     if mesh is not None:
-        corrected(mesh, fit, radius is None)
+        repair_ends(mesh, fit, radius is None)
+        t = mesh.topology
+        told = rings_around(t, t.vertex_is_used & ~t.vertex_is_boundary, 1)
+        flatten(fit, flat_vertices(mesh) & told)
     if radius is not None:
         return fit
     fit = fit if mesh is None else with_detail(mesh, fit)
@@ -73,4 +78,5 @@ def _too_curved(cloud: Cloud, fit: Estimate) -> NDArray[np.bool_]:
     sheet = cloud.sheet
     lengths = np.empty(len(sheet.vertices))
     stencils.mean_edge_lengths(sheet.vertices, sheet.offsets, sheet.neighbours, lengths)
-    return np.fmax(np.abs(fit.k1), np.abs(fit.k2)) * lengths > 2.0
+    largest = np.fmax(np.abs(fit.k1), np.abs(fit.k2))  # type: ignore[arg-type]
+    return largest * lengths > 2.0

@@ -103,7 +103,7 @@ def _agreeing_signs(points: Floats, normals: Floats, links: csr_array) -> Floats
     step = points[links.indices] - points[rows]
     rise = np.abs(np.sum(step * normals[rows], axis=1)) / np.maximum(np.linalg.norm(step, axis=1), 1e-300)
     tree = minimum_spanning_tree(csr_array((1e-6 + turn + rise, links.indices, links.indptr), shape=links.shape))
-    labels = connected_components(tree, directed=False)[1]
+    _, labels = connected_components(tree, directed=False)
     signs = np.empty(len(points))
     clouds.carry_signs(*_rooted(tree, np.unique(labels, return_index=True)[1]), normals, signs)
     return signs * _outward(points, normals * signs[:, None], labels)[labels]
@@ -111,12 +111,12 @@ def _agreeing_signs(points: Floats, normals: Floats, links: csr_array) -> Floats
 
 def _rooted(forest: csr_array, roots: Indices) -> tuple[Indices, Indices]:
     """The nodes of a forest, each after its parent, and their parents; those of the roots are one more node."""
-    n = forest.shape[0]
+    n = len(forest.indptr) - 1
     at = coo_array(forest)
-    rows, columns = np.append(at.row, np.full(len(roots), n)), np.append(at.col, roots)
+    rows, columns = np.append(at.coords[0], np.full(len(roots), n)), np.append(at.coords[1], roots)
     tree = csr_array((np.ones(len(rows)), (rows, columns)), shape=(n + 1, n + 1))
-    order, parents = breadth_first_order(tree, n, directed=False)
-    return order[1:], parents
+    order, parents = breadth_first_order(tree, n, directed=False, return_predecessors=True)
+    return np.asarray(order)[1:], np.asarray(parents)
 
 
 def _outward(points: Floats, normals: Floats, labels: Indices) -> Floats:

@@ -20,8 +20,8 @@ FAR = 3.0
 N_NEAR, ALONE = 8, 2
 """Points whose mean distance that is, and how many of them may lie beside the surface as well: more are a sheet of
 their own, at a crease or beside another one."""
-DEVIATIONS, SPACINGS = 12.0, 0.25
-"""Offset from the surface that is no noise: in median residuals (eight standard deviations of noise), in spacings."""
+DEVIATIONS, SPACINGS = 16.0, 0.3
+"""Offset from the surface that is no noise: in median residuals (ten standard deviations of noise), in spacings."""
 
 
 def stray_points(points: Floats, distances: Floats, near: Indices) -> Bools:

@@ -66,7 +66,7 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     one side only they change along a cut.  The Gaussian curvature does not depend on them.
 
     Points far from all others, and single points beside the quadric of least moduli through those around them, by
-    eight standard deviations of the noise and a quarter of the spacing, are left out: they are UNRESOLVED.  So are
+    ten standard deviations of the noise and a third of the spacing, are left out: they are UNRESOLVED.  So are
     points whose standard error exceeds 1.5/radius², as it does where points fill a part of space or follow a curve,
     and near creases.
 

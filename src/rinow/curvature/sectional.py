@@ -26,7 +26,9 @@ __all__ = [
     "EDGE_RINGS",
     "QUALITIES",
     "blended_patches",
-    "corrected",
+    "flat_vertices",
+    "flatten",
+    "repair_ends",
     "rings_around",
     "sectional",
     "shrinkage",
@@ -138,19 +140,19 @@ def sectional(
     spread[mesh.topology.vertex_is_boundary] *= EDGE_CALIBRATION
     estimate = Estimate(gaussian, spread, reach, mean, mean + half, mean - half, direction1, direction2, noise, spacing)
     estimate.put(on_edge, ends)
-    corrected(mesh, estimate, radius is None)
+    repair_ends(mesh, estimate, radius is None)
+    flatten(estimate, flat_vertices(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
     return estimate
 
 
-def corrected(mesh: TriangleMesh, estimate: Estimate, fill: bool) -> None:
-    """Correct an estimate where faces know better: at ends, where no patch has a fit, and where the metric is flat."""
+def repair_ends(mesh: TriangleMesh, estimate: Estimate, fill: bool) -> None:
+    """Undefine what no edge at the boundary can have, and fill in where no patch has a fit."""
     _doubt_ends(mesh, estimate)
     if fill:
         _fill_in(mesh, estimate)
         _doubt_ends(mesh, estimate)
-    _flatten(estimate, _flat_vertices(mesh))
 
 
 def blended_patches(
@@ -218,7 +220,7 @@ def shrinkage(samples: Samples, out: Floats) -> Floats:
     return shrinkage
 
 
-def _flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
+def flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
     """(n_vertices,): every interior vertex within three rings has the angle 2π."""
     t = mesh.topology
     curved = (np.abs(mesh.vertex_angle_defects) > FLAT_DEFECT) & ~t.vertex_is_boundary
@@ -227,7 +229,7 @@ def _flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
     return ~rings_around(t, curved, FLAT_RINGS)
 
 
-def _flatten(estimate: Estimate, is_flat: NDArray[np.bool_]) -> None:
+def flatten(estimate: Estimate, is_flat: NDArray[np.bool_]) -> None:
     """Take K = 0 at some vertices; the mean curvature stays."""
     rows = np.flatnonzero(is_flat & np.isfinite(estimate.gaussian))
     if estimate.mean is None or not len(rows):
