@@ -23,7 +23,10 @@ Floats = NDArray[np.float64]
 
 LEAST_POINTS = 7
 """Points below which no quadric over a tangent plane is determined: it has six coefficients."""
-NOTE = "The points have no orientation: the normals point outwards at the highest point, and agree between neighbours."
+NOTE = (
+    "The points have no orientation: the normals agree between neighbours and point away from the middle of each part, "
+    "or upwards at its highest point."
+)
 
 
 def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> SurfaceCurvature:
