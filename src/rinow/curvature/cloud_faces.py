@@ -39,22 +39,19 @@ def agreed_triangles(points: Floats, star: Indices, counts: Indices, reach: Floa
     two, then of one, small circles before large ones, unless they have a side in common, in its direction, with one
     taken before: stars laid over different planes disagree about four points on a circle.
     """
+    n = len(points)
     owner, place = np.nonzero(np.arange(star.shape[1]) < counts[:, None])
     corners = np.stack([owner, star[owner, place], star[owner, (place + 1) % counts[owner]]], axis=1)
-    corners = corners[_circle_diameters(points[corners]) < reach[owner]]
+    diameters = np.empty(len(corners))
+    clouds.circle_diameters(points, corners, diameters)
+    known = diameters < reach[owner]
+    corners, diameters = corners[known], diameters[known]
     first = corners.argmin(axis=1)
     corners = np.take_along_axis(corners, (first[:, None] + np.arange(3)) % 3, axis=1)
-    faces, votes = np.unique(corners, axis=0, return_counts=True)
-    faces = faces[np.lexsort((_circle_diameters(points[faces]), -votes))]
-    sides, numbers = np.unique(faces * len(points) + np.roll(faces, -1, axis=1), return_inverse=True)
+    sides = np.unique(corners[:, 0] * n + corners[:, 1], return_inverse=True)[1]
+    _, one, votes = np.unique(sides * n + corners[:, 2], return_index=True, return_counts=True)
+    faces = corners[one[np.lexsort((diameters[one], -votes))]]
+    sides, numbers = np.unique(faces * n + np.roll(faces, -1, axis=1), return_inverse=True)
     taken = np.empty(len(faces), np.bool_)
     clouds.take_triangles(numbers.reshape(-1, 3), len(sides), taken)
     return faces[taken]
-
-
-def _circle_diameters(triangles: Floats) -> Floats:
-    """Diameters of the circles through three points each; inf if these are on a line."""
-    sides = np.roll(triangles, -1, axis=1) - triangles
-    double_area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
-    product = np.prod(np.linalg.norm(sides, axis=2), axis=1)
-    return np.divide(product, double_area, out=np.full(len(triangles), np.inf), where=double_area > 0.0)

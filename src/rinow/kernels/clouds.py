@@ -165,6 +165,22 @@ def long_axes(points, normals, star, counts, out):
         out[v, 0], out[v, 1], out[v, 2] = axis[0], axis[1], axis[2]
 
 
+@parallel_kernel
+def circle_diameters(points, triangles, out):
+    """Write the diameters of the circles through three points each; inf if these are on a line."""
+    for f in prange(triangles.shape[0]):
+        p, q, r = triangles[f, 0], triangles[f, 1], triangles[f, 2]
+        a = (points[q, 0] - points[p, 0], points[q, 1] - points[p, 1], points[q, 2] - points[p, 2])
+        b = (points[r, 0] - points[p, 0], points[r, 1] - points[p, 1], points[r, 2] - points[p, 2])
+        c = monge.combination(1.0, b, -1.0, a)
+        across = monge.cross(a, b)
+        double_area = math.sqrt(across[0] ** 2 + across[1] ** 2 + across[2] ** 2)
+        product = 1.0
+        for side in (a, b, c):
+            product *= math.sqrt(side[0] ** 2 + side[1] ** 2 + side[2] ** 2)
+        out[f] = product / double_area if double_area > 0.0 else np.inf
+
+
 @kernel
 def take_triangles(sides, n_sides, taken):
     """Take triangles in their order unless a directed side of theirs, by its number, is in one taken before."""
