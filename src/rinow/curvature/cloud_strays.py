@@ -20,8 +20,8 @@ FAR = 3.0
 N_NEAR, ALONE = 8, 2
 """Points whose mean distance that is, and how many of them may lie beside the surface as well: more are a sheet of
 their own, at a crease or beside another one."""
-DEVIATIONS, SPACINGS = 16.0, 0.3
-"""Offset from the surface that is no noise: in median residuals (ten standard deviations of noise), in spacings."""
+DEVIATIONS, SPACINGS = 14.0, 0.3
+"""Offset from the surface that is no noise: in median residuals (eight standard deviations of noise), in spacings."""
 
 
 def stray_points(points: Floats, distances: Floats, near: Indices) -> Bools:
@@ -37,16 +37,17 @@ def stray_points(points: Floats, distances: Floats, near: Indices) -> Bools:
     Notes
     -----
     The quadric is that of least moduli, which a few strays do not bend, through the nearest points without the
-    point itself.  A curved surface of few points leaves residuals too; these raise the limit.  None is called stray
-    where fewer than 36 points are looked at.
+    point itself.  A curved surface of few points leaves residuals too; their median, over the points around, raises
+    the limit.  None is called stray where fewer than 36 points are looked at.
     """
     n, k = near.shape
     if k < NEAREST:
         return np.zeros(n, np.bool_)
     close = distances[:, :N_NEAR].mean(axis=1)
     is_far = close > FAR * np.median(close[near[:, :N_NEAR]], axis=1)
-    normals, offsets, companions = np.empty_like(points), np.empty(n), np.empty(n, np.intp)
+    normals, offsets, middles = np.empty_like(points), np.empty(n), np.empty(n)
     clouds.plane_normals(points, near, normals)
-    limits = np.array([DEVIATIONS, SPACINGS * np.sqrt(np.pi / (k + 0.5))])
-    cloud_strays.offsets(points, normals, near, distances[:, -1], limits, N_NEAR, N_BLOCKS, offsets, companions)
-    return is_far | ((offsets > 1.0) & (companions <= ALONE))
+    cloud_strays.offsets(points, normals, near, distances[:, -1], N_BLOCKS, offsets, middles)
+    spacing = np.sqrt(np.pi / (k + 0.5)) * distances[:, -1]
+    is_beside = offsets > np.maximum(DEVIATIONS * np.median(middles[near], axis=1), SPACINGS * spacing)
+    return is_far | (is_beside & (np.count_nonzero(is_beside[near[:, :N_NEAR]], axis=1) <= ALONE))

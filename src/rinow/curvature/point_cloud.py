@@ -69,7 +69,7 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     one side only they change along a cut.  The Gaussian curvature does not depend on them.
 
     Points far from all others, and single points beside the quadric of least moduli through those around them, by
-    ten standard deviations of the noise and a third of the spacing, are left out: they are UNRESOLVED.  So are points
+    eight standard deviations of the noise and a third of the spacing, are left out: they are UNRESOLVED.  So are points
     whose standard error exceeds 1.5/radius²: where points fill a part of space, near creases, and on most of a curve.
 
     Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Sheets nearer to each
