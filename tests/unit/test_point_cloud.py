@@ -147,7 +147,9 @@ def test_sheets_five_spacings_apart_are_two():
     cloud = rinow.point_cloud_curvature(np.concatenate([patch.vertices, lower]))
     inside = np.abs(np.concatenate([patch.vertices, lower])[:, :2]).max(axis=1) < 0.6
     exact = np.concatenate([patch.gaussian, patch.gaussian])
-    assert relative(cloud.gaussian[inside], exact[inside]) < 0.05
+    # Some balls see a point of the other sheet; taken for one, the two would be noise of two spacings: errors above 1.
+    assert np.median(np.abs(cloud.gaussian - exact)[inside]) < 1e-2
+    assert relative(cloud.gaussian[inside], exact[inside]) < 0.3
 
 
 def test_density_that_changes_tenfold():
