@@ -72,9 +72,9 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     eight standard deviations of the noise and a third of the spacing, are left out: they are UNRESOLVED.  So are points
     whose standard error exceeds 1.5/radius²: where points fill a part of space, near creases, and on most of a curve.
 
-    Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Sheets three to six spacings
-    apart are told from each other at most points; nearer ones are taken for one.  Lengths from 1e-140 to 1e140 neither
-    overflow nor underflow.
+    Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Sheets three to six
+    spacings apart are told from each other at most points; nearer ones are taken for one.  Lengths from 1e-140 to
+    1e140 neither overflow nor underflow.
 
     Examples
     --------
