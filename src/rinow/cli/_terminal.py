@@ -14,7 +14,7 @@ from rich.progress import BarColumn, SpinnerColumn, TaskProgressColumn, TextColu
 from rich.progress import Progress as Bar
 from rich.table import Table
 
-from rinow.study.surface import SurfaceStudy, field_unit
+from rinow.study.surface import CurvatureStudy, field_unit
 
 __all__ = ["console", "print_counts", "print_json", "print_notes", "print_study", "working"]
 
@@ -70,8 +70,8 @@ def print_counts(title: str, counts: Mapping[str, Any]) -> None:
     out.print(table)
 
 
-def print_study(title: str, study: SurfaceStudy) -> None:
-    """A table of the fields with their units and percentiles, and the status of the vertices."""
+def print_study(title: str, study: CurvatureStudy) -> None:
+    """A table of the fields with their units and percentiles, and how many vertices or points have each status."""
     table = Table(title=title)
     table.add_column("field")
     table.add_column("unit")
@@ -84,7 +84,7 @@ def print_study(title: str, study: SurfaceStudy) -> None:
     out.print(table)
     status = ", ".join(f"{n:,} {name}" for name, n in study.status_counts().items())
     seconds = ", ".join(f"{step} {s:.2f} s" for step, s in study.seconds.items())
-    out.print(f"method {study.curvature.method}; vertices: {status}; {seconds}", highlight=False)
+    out.print(f"method {study.curvature.method}; {study.places}: {status}; {seconds}", highlight=False)
     print_notes(study.notes)
 
 

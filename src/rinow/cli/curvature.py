@@ -10,9 +10,21 @@ from cyclopts import Parameter
 
 from rinow._version import __version__
 from rinow.cli._terminal import print_json, print_notes, print_study, working
+from rinow.errors import InvalidInputError
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.point_files import check_point_outputs, holds_points, read_cloud, write_points
 from rinow.study.features import FeatureStudy, study_features
-from rinow.study.surface import PERCENTILES, SIGN, SIGNED, SurfaceStudy, field_unit, mesh_counts, study_surface
+from rinow.study.points import point_counts, study_points
+from rinow.study.surface import (
+    PERCENTILES,
+    SIGN,
+    SIGNED,
+    CurvatureStudy,
+    SurfaceStudy,
+    field_unit,
+    mesh_counts,
+    study_surface,
+)
 
 __all__ = ["curvature", "write_picture", "write_report"]
 
@@ -36,20 +48,22 @@ def curvature(
     unit: str = "length",
     json: bool = False,
 ) -> None:
-    """Compute the curvature at every vertex of a mesh, in the order of the file.
+    """Compute the curvature at every vertex of a mesh or point of a cloud, in the order of the file.
 
     Convex with outward normal is positive.
 
     Parameters
     ----------
     mesh
-        Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.
+        Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.  Points without faces: PLY, NPZ, NPY, or
+        text with x, y, z on each line (XYZ, CSV, TSV, TXT, DAT).
     output
-        File to write the mesh and its curvature to; may be repeated.  PLY, VTP, NPZ and GIFTI carry fields.
+        File to write the mesh and its curvature to; may be repeated.  PLY, VTP, NPZ and GIFTI carry fields; points
+        are written as PLY, CSV or NPZ.
     method
-        How to compute the curvature.
+        How to compute the curvature; for meshes.
     quality
-        fast is several times faster and less accurate; for the methods auto and sectional.
+        fast is several times faster and less accurate; for meshes and the methods auto and sectional.
     radius
         Scale in the unit of length of the file; by default each method chooses its own.
     field
@@ -65,6 +79,13 @@ def curvature(
     json
         Print one JSON object instead of a table.
     """
+    if holds_points(mesh):
+        given = {"method": method != "auto", "quality": quality != "best", "picture": picture, "report": report}
+        for option, is_given in given.items():
+            if is_given:
+                raise InvalidInputError(f"--{option} needs faces, and {mesh} holds points only; leave it out.")
+        _curvature_of_points(mesh, output, radius, field, unit, json)
+        return
     pictures, pages = [picture] if picture else [], [report] if report else []
     outputs = [*output, *pictures, *pages]
     check_outputs(outputs, inputs=[mesh], pictures=pictures, pages=pages)
@@ -90,10 +111,31 @@ def curvature(
             with working(f"writing {report.name}"):
                 write_report(report, study, features, field=field, title=mesh.name, up=up)
     if json:
-        print_json(_record(mesh, study, field, outputs, notes))
+        print_json(_record(mesh, study, mesh_counts(surface), field, outputs, notes))
     else:
         print_study(str(mesh), study)
         print_notes(tuple(notes))
+
+
+def _curvature_of_points(
+    path: Path, output: tuple[Path, ...], radius: float | None, field: Field, unit: str, json: bool
+) -> None:
+    """The curvature at the points of a file without faces."""
+    check_point_outputs(output, inputs=[path])
+    with working(f"reading {path.name}"):
+        points, notes = read_cloud(path)
+    with working(f"curvature of {len(points):,} points"):
+        study = study_points(points, radius=radius, unit=unit)
+    notes = ("The file has no faces: the curvature is that of the cloud of its points.", *notes)
+    with study.timed("writing"):
+        for target in output:
+            with working(f"writing {target.name}"):
+                notes += write_points(target, points, study.vertex_data(field), study.units(), field)
+    if json:
+        print_json(_record(path, study, point_counts(points), field, list(output), list(notes)))
+    else:
+        print_study(str(path), study)
+        print_notes(notes)
 
 
 def write_picture(path: Path, study: SurfaceStudy, field: str, *, title: str, up: str) -> None:
@@ -133,14 +175,16 @@ def write_report(
         write_surface_page(temporary, page)
 
 
-def _record(mesh: Path, study: SurfaceStudy, field: str, outputs: list[Path], notes: list[str]) -> dict[str, object]:
+def _record(
+    path: Path, study: CurvatureStudy, counts: dict[str, int], field: str, outputs: list[Path], notes: list[str]
+) -> dict[str, object]:
     """What --json prints."""
     return {
         "rinow": __version__,
-        "input": str(mesh),
+        "input": str(path),
         "method": study.curvature.method,
         "field": field,
-        "counts": mesh_counts(study.mesh),
+        "counts": counts,
         "status": study.status_counts(),
         "units": {name: field_unit(name, study.unit) for name in study.fields()},
         "sign": SIGN,

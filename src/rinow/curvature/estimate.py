@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Estimate"]
+__all__ = ["Estimate", "undefined"]
 
 Floats = NDArray[np.float64]
 
@@ -63,9 +63,23 @@ class Estimate:
         values: dict[str, Any] = {field.name: getattr(self, field.name) for field in fields(self)}
         return replace(self, **{name: x[vertices] for name, x in values.items() if x is not None})
 
+    def fill(self, vertices: NDArray[np.intp], other: Estimate) -> None:
+        """Give some vertices the values of another estimate, in their order."""
+        for name in (field.name for field in fields(self)):
+            ours, theirs = getattr(self, name), getattr(other, name)
+            if ours is not None and theirs is not None:
+                ours[vertices] = theirs
+
     def put(self, vertices: NDArray[np.intp], origins: NDArray[np.intp]) -> None:
         """Give some vertices the values of others."""
         if len(vertices):
             for value in (getattr(self, field.name) for field in fields(self)):
                 if value is not None:
                     value[vertices] = value[origins]
+
+
+def undefined(n_vertices: int) -> Estimate:
+    """An estimate of everything with nan everywhere."""
+    width = {"direction1": (3,), "direction2": (3,)}
+    values: dict[str, Any] = {f.name: np.full((n_vertices, *width.get(f.name, ())), np.nan) for f in fields(Estimate)}
+    return Estimate(**values)

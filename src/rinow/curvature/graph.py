@@ -120,7 +120,9 @@ def graph_curvature(
     "menger" and "haantjes" an edge of a tree or of a cycle of five and more has 0, one of the complete graph of n
     nodes (n - 2)/√3 and (n - 2) + √2 (n - 2)(n - 3), an inner edge of the square grid 0 and 2√2.
 
-    The cost is O(Σ over edges uv of the edges at the neighbours of u) for the edges, without listing a path.
+    The cost is O(Σ over edges uv of the edges at the neighbours of u) for the edges, without listing a path.  "wald"
+    searches twice the ball from twelve landmarks for each node: quick where balls are small parts of the graph, but the
+    whole graph for each node of one without such places, such as a random graph.
 
     References
     ----------

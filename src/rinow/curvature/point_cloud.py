@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow._arrays import as_floats, as_points
-from rinow._executor import SerialExecutor
-from rinow.curvature.cloud_sheet import cloud_sheet
-from rinow.curvature.patch_tasks import Tasks
-from rinow.curvature.scale import Ladder, sample
-from rinow.curvature.sectional import EDGE_RINGS, QUALITIES, blended_patches, rings_around, shrinkage, standard_errors
+from rinow.curvature.cloud_fit import cloud_estimate
+from rinow.curvature.cloud_sheet import cloud_sheet, nearest_points
+from rinow.curvature.cloud_strays import stray_points
+from rinow.curvature.estimate import Estimate, undefined
+from rinow.curvature.sheet import morton_order
 from rinow.curvature.status import VertexStatus
-from rinow.curvature.stencils import N_BLOCKS, empty_frames
-from rinow.curvature.surface import SurfaceCurvature
+from rinow.curvature.surface import SurfaceCurvature, assembled, relabelled, rescaled
 from rinow.errors import InvalidInputError
-from rinow.kernels import quadrics, stencils
 
 __all__ = ["point_cloud_curvature"]
 
@@ -25,7 +23,10 @@ Floats = NDArray[np.float64]
 
 LEAST_POINTS = 7
 """Points below which no quadric over a tangent plane is determined: it has six coefficients."""
-NOTE = "The points have no orientation: the normals point outwards at the highest point, and agree between neighbours."
+NOTE = (
+    "The points have no orientation: the normals agree between neighbours and point away from the middle of each part, "
+    "or upwards at its highest point."
+)
 
 
 def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> SurfaceCurvature:
@@ -59,17 +60,24 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     -----
     Each point is joined to its neighbours in the Delaunay triangulation of the 36 nearest points over their plane of
     least squares, and they to it; balls grow over these links as they do over the edges of a mesh, and the same
-    polynomials over osculating tori are fitted to them.  The signs of the normals, and with them those of the mean
-    and the principal curvatures, cannot be known from points: they agree between neighbours and are outward at the
-    highest point of each component, which is right for closed surfaces.  On a surface with one side only they change
-    along a cut.  The Gaussian curvature does not depend on them.
+    polynomials over osculating tori are fitted to them.  The triangles on which the neighbours agree tell, as in a
+    mesh, where the surface is flat and where fits over large balls have taken detail for noise.
+
+    The signs of the normals, and with them those of the mean and the principal curvatures, cannot be known from
+    points: they agree between neighbours.  Those of a connected part point away from its middle, which is right for
+    closed surfaces, or, where that does not decide, as on a terrain, upwards at its highest point.  On a surface with
+    one side only they change along a cut.  The Gaussian curvature does not depend on them.
+
+    Points far from all others, and single points beside the quadric of least moduli through those around them, by
+    eight standard deviations of the noise and a third of the spacing, are left out: they are UNRESOLVED.  So are points
+    whose standard error exceeds 1.5/radius²: where points fill a part of space, near creases, and on most of a curve.
 
     `spread` is that of the fits of `surface_curvature`.  With much noise a tenth of the points of a border are not seen
     to be there, and their spread is somewhat too small.
 
-    Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Sheets nearer to each
-    other than some spacings are taken for one.  Lengths from 1e-140 to 1e140 neither
-    overflow nor underflow.
+    Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Sheets three to six
+    spacings apart are told from each other at most points; nearer ones are taken for one.  Lengths from 1e-140 to
+    1e140 neither overflow nor underflow.
 
     Examples
     --------
@@ -85,62 +93,37 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
         value = as_floats(radius, "radius")
         if value.ndim or not 0.0 < value < np.inf:
             raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
-    status = np.full(len(P), VertexStatus.UNRESOLVED, np.uint8)
     finite = np.isfinite(P).all(axis=1)
-    status[~finite] = VertexStatus.NONFINITE
     distinct, place = np.unique(P[finite], axis=0, return_inverse=True)
-    if len(distinct) < LEAST_POINTS:
-        return _assembled(np.full((len(P), 4), np.nan), np.full((2, len(P), 3), np.nan), status)
-    unit = 1.0 / float(np.ptp(distinct, axis=0).max())
-    values, directions, at_border = _of_distinct(
-        (distinct - distinct[0]) * unit, None if radius is None else float(radius) * unit
+    extent = float(np.ptp(distinct, axis=0).max()) if len(distinct) > 1 else 1.0
+    estimate, status, n_strays = _of_distinct(
+        (distinct - distinct[:1]) / extent, None if radius is None else float(radius) / extent
     )
-    values *= np.array([unit**2, unit, unit**2, 1.0 / unit])
-    where, rows = np.flatnonzero(finite), place.ravel()
-    everywhere, both = np.full((len(P), 4), np.nan), np.full((2, len(P), 3), np.nan)
-    everywhere[where], both[:, where] = values[rows], directions[:, rows]
-    known = np.isfinite(everywhere[:, 0])
-    border = np.zeros(len(P), np.bool_)
-    border[where] = at_border[rows]
-    status[known] = np.where(border[known], VertexStatus.BOUNDARY, VertexStatus.OK)
-    return _assembled(everywhere, both, status)
+    rows = np.full(len(P), len(distinct), np.intp)  # the last row is for the other points
+    rows[finite] = place.ravel()
+    result = relabelled(rescaled(assembled(estimate, status, "point_cloud"), 1.0 / extent), rows)
+    strays = (f"{n_strays} points lie beside the surface of those around them and were left out (UNRESOLVED).",)
+    return replace(result, notes=(NOTE, *strays[: bool(n_strays)]))
 
 
-def _of_distinct(points: Floats, radius: float | None) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """K, H, standard error of K and radius (n, 4), principal directions (2, n, 3), and which points are at a border."""
-    sheet, at_border = cloud_sheet(points)
-    quality = QUALITIES["best"]
-    ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
-    tasks = Tasks(SerialExecutor())
-    samples = sample(sheet, ladder, quality.selects, tasks)
-    at_edge = rings_around(sheet, at_border, EDGE_RINGS)
-    out, direction1, direction2 = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)[:3]
-    out[:, 0] *= shrinkage(samples, out)
-    values = np.column_stack([out[:, 0], out[:, 1], standard_errors(out, quality, at_border), out[:, 3]])
-    missing = np.flatnonzero(~np.isfinite(values[:, 0]))
-    values[missing] = np.nan
-    if len(missing) and radius is None:
-        frames = empty_frames(len(missing))
-        rings = stencils.Surface(sheet.vertices, sheet.normals, sheet.offsets, sheet.neighbours, True)
-        quadrics.ring_quadrics(missing, rings, True, N_BLOCKS, frames)
-        values[missing, 0], values[missing, 1] = frames.k1 * frames.k2, 0.5 * (frames.k1 + frames.k2)
-        direction1[missing], direction2[missing] = frames.direction1, frames.direction2
-    return values, np.stack([direction1, direction2]), at_border
-
-
-def _assembled(values: Floats, directions: Floats, status: NDArray[np.uint8]) -> SurfaceCurvature:
-    """The result with the quantities that follow from K and H."""
-    gaussian, mean, spread, radius = values.T.copy()
-    half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
-    k1, k2 = mean + half, mean - half
-    directions[:, np.isnan(gaussian)] = np.nan
-    fields: dict[str, Any] = {
-        "shape_index": 2.0 / np.pi * np.arctan2(k1 + k2, k1 - k2),
-        "curvedness": np.sqrt(0.5 * (k1 * k1 + k2 * k2)),
-        "direction1": directions[0],
-        "direction2": directions[1],
-    }
-    return SurfaceCurvature(
-        gaussian=gaussian, mean=mean, k1=k1, k2=k2, status=status, radius=radius, spread=spread, method="point_cloud",
-        notes=(NOTE,), **fields,
-    )  # fmt: skip
+def _of_distinct(points: Floats, radius: float | None) -> tuple[Estimate, NDArray[np.uint8], int]:
+    """The estimate and status of distinct points and, in a last row, of those not finite; how many strays there are."""
+    n = len(points)
+    everywhere, status = undefined(n + 1), np.full(n + 1, VertexStatus.UNRESOLVED, np.uint8)
+    status[n] = VertexStatus.NONFINITE
+    if n < LEAST_POINTS:
+        return everywhere, status, 0
+    order = morton_order(points).astype(np.intp)
+    nearest = nearest_points(points[order])
+    is_stray = stray_points(points[order], *nearest)
+    if is_stray.any():
+        order = order[~is_stray]
+        if len(order) < LEAST_POINTS:
+            return everywhere, status, int(is_stray.sum())
+        nearest = nearest_points(points[order])
+    cloud = cloud_sheet(points[order], *nearest)
+    found = cloud_estimate(cloud, radius)
+    everywhere.fill(order, found)
+    status[order] = np.where(cloud.at_border, VertexStatus.BOUNDARY, VertexStatus.OK)
+    status[order[~np.isfinite(found.gaussian)]] = VertexStatus.UNRESOLVED
+    return everywhere, status, int(is_stray.sum())

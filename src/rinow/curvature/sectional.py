@@ -21,7 +21,18 @@ from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencil
 from rinow.mesh import TriangleMesh
 from rinow.topology import Topology
 
-__all__ = ["EDGE_RINGS", "QUALITIES", "blended_patches", "rings_around", "sectional", "shrinkage", "standard_errors"]
+__all__ = [
+    "EDGE_RINGS",
+    "QUALITIES",
+    "blended_patches",
+    "flat_vertices",
+    "flatten",
+    "repair_ends",
+    "rings_around",
+    "sectional",
+    "shrinkage",
+    "standard_errors",
+]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -133,14 +144,19 @@ def sectional(
     principal = mean + half, mean - half, direction1, direction2
     estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk)
     estimate.put(on_edge, ends)
-    _doubt_ends(mesh, estimate)
-    if radius is None:
-        _fill_in(mesh, estimate)
-        _doubt_ends(mesh, estimate)
-    _flatten(estimate, _flat_vertices(mesh))
+    repair_ends(mesh, estimate, radius is None)
+    flatten(estimate, flat_vertices(mesh))
     if progress is not None:
         progress(mesh.n_vertices, mesh.n_vertices)
     return estimate
+
+
+def repair_ends(mesh: TriangleMesh, estimate: Estimate, fill: bool) -> None:
+    """Undefine what no edge at the boundary can have, and fill in where no patch has a fit."""
+    _doubt_ends(mesh, estimate)
+    if fill:
+        _fill_in(mesh, estimate)
+        _doubt_ends(mesh, estimate)
 
 
 def blended_patches(
@@ -214,7 +230,7 @@ def shrinkage(samples: Samples, out: Floats) -> Floats:
     return shrinkage
 
 
-def _flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
+def flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
     """(n_vertices,): every interior vertex within three rings has the angle 2π."""
     t = mesh.topology
     curved = (np.abs(mesh.vertex_angle_defects) > FLAT_DEFECT) & ~t.vertex_is_boundary
@@ -223,7 +239,7 @@ def _flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
     return ~rings_around(t, curved, FLAT_RINGS)
 
 
-def _flatten(estimate: Estimate, is_flat: NDArray[np.bool_]) -> None:
+def flatten(estimate: Estimate, is_flat: NDArray[np.bool_]) -> None:
     """Take K = 0 at some vertices; the mean curvature stays."""
     rows = np.flatnonzero(is_flat & np.isfinite(estimate.gaussian))
     if estimate.mean is None or not len(rows):

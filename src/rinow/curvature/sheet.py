@@ -9,7 +9,7 @@ from rinow.curvature.stencils import local_spacing, stencil_surface
 from rinow.kernels import balls, stencils
 from rinow.mesh import TriangleMesh
 
-__all__ = ["patch_sheet", "sorted_by"]
+__all__ = ["morton_order", "patch_sheet", "sorted_by"]
 
 
 def patch_sheet(mesh: TriangleMesh, left_out: NDArray[np.bool_] | None = None) -> tuple[balls.Sheet, NDArray[np.intp]]:
@@ -33,12 +33,17 @@ def patch_sheet(mesh: TriangleMesh, left_out: NDArray[np.bool_] | None = None) -
     stencils.ring_directions(surface.normals, not t.is_orientable, t.neighbour_offsets, t.neighbours, normals)
     spacing = local_spacing(mesh)
     index = np.flatnonzero(t.vertex_is_used & (spacing > 0.0) & (True if left_out is None else ~left_out))
-    index = index[sorted_by(_morton_codes(mesh.vertices[index]))]
+    index = index[morton_order(mesh.vertices[index])]
     rank = np.full(mesh.n_vertices, -1, np.int32)
     rank[index] = np.arange(len(index), dtype=np.int32)
     offsets, neighbours = _rows(t.neighbour_offsets, t.neighbours, index, rank)
     place = mesh.vertices[index], normals[index]
     return balls.Sheet(*place, offsets, neighbours, spacing[index], t.is_orientable), index
+
+
+def morton_order(points: NDArray[np.float64]) -> NDArray[np.int32]:
+    """An order of points that keeps near ones together."""
+    return sorted_by(_morton_codes(points))
 
 
 def sorted_by(keys: NDArray[np.uint32]) -> NDArray[np.int32]:

@@ -26,7 +26,7 @@ from rinow.curvature.wald import wald
 from rinow.errors import InvalidInputError
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh, as_triangle_mesh
 
-__all__ = ["SurfaceCurvature", "surface_curvature"]
+__all__ = ["SurfaceCurvature", "assembled", "relabelled", "rescaled", "surface_curvature"]
 
 Floats = NDArray[np.float64]
 
@@ -190,9 +190,9 @@ def surface_curvature(
     estimate, on_crease = _estimate(surface, chosen, quality, radius, progress, executor)
     status = vertex_status(surface)
     status[on_crease & (status == VertexStatus.OK)] = VertexStatus.BOUNDARY
-    result = _assembled(estimate, status, chosen)
+    result = assembled(estimate, status, chosen)
     notes += mesh_notes(surface, oriented=chosen not in BY_LENGTHS) + crease_notes(on_crease)
-    return replace(_relabelled(_rescaled(result, unit), index), notes=notes)
+    return replace(relabelled(rescaled(result, unit), index), notes=notes)
 
 
 def _with_safe_lengths(mesh: TriangleMesh | IntrinsicMesh) -> tuple[TriangleMesh | IntrinsicMesh, float]:
@@ -250,7 +250,7 @@ def _estimate(
     return estimate, np.zeros(mesh.n_vertices, np.bool_)
 
 
-def _assembled(estimate: Estimate, status: NDArray[np.uint8], method: str) -> SurfaceCurvature:
+def assembled(estimate: Estimate, status: NDArray[np.uint8], method: str) -> SurfaceCurvature:
     """The result in the unit and order of the mesh computed with."""
     finite = np.isfinite(estimate.gaussian)
     status[(status == VertexStatus.OK) & ~finite] = VertexStatus.UNRESOLVED
@@ -270,7 +270,7 @@ def _assembled(estimate: Estimate, status: NDArray[np.uint8], method: str) -> Su
     return SurfaceCurvature(**values, status=status, method=method)
 
 
-def _rescaled(result: SurfaceCurvature, unit: float) -> SurfaceCurvature:
+def rescaled(result: SurfaceCurvature, unit: float) -> SurfaceCurvature:
     """The result for lengths divided by `unit`."""
     if unit == 1.0:
         return result
@@ -279,7 +279,7 @@ def _rescaled(result: SurfaceCurvature, unit: float) -> SurfaceCurvature:
     return replace(result, **values)
 
 
-def _relabelled(result: SurfaceCurvature, index: NDArray[np.intp] | None) -> SurfaceCurvature:
+def relabelled(result: SurfaceCurvature, index: NDArray[np.intp] | None) -> SurfaceCurvature:
     """The result with row index[v] for vertex v."""
     if index is None:
         return result

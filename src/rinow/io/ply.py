@@ -17,7 +17,7 @@ from rinow.io.ply_header import Element, Header, read_header
 from rinow.io.polygons import Runs, surface_triangles
 from rinow.mesh import TriangleMesh
 
-__all__ = ["read_ply", "read_ply_points", "write_ply"]
+__all__ = ["has_faces", "read_ply", "read_ply_points", "write_ply", "write_ply_points"]
 
 Indices = NDArray[np.intp]
 
@@ -73,6 +73,17 @@ def read_ply(path: Path) -> TriangleMesh:
     if rest:
         notes = (*notes, f"{rest} bytes after the last element were left unread.")
     return TriangleMesh(vertices, faces, fields, notes)
+
+
+def has_faces(path: Path) -> bool:
+    """Whether the header of a PLY file promises faces or strips of them.
+
+    Raises
+    ------
+    FileFormatError
+        If the header has a fault.
+    """
+    return any(e.n_rows for e in read_header(path).elements if e.name in ("face", "tristrips"))
 
 
 def read_ply_points(path: Path) -> NDArray[np.float64]:
@@ -189,14 +200,35 @@ def write_ply(path: Path, mesh: TriangleMesh, fields: Fields, units: Units) -> t
     FileFormatError
         If the file cannot be written.
     """
+    return _write(path, mesh.vertices, mesh.faces, fields, units)
+
+
+def write_ply_points(path: Path, points: NDArray[np.float64], fields: Fields, units: Units) -> tuple[str, ...]:
+    """Write points without faces, as `write_ply` writes vertices.
+
+    Raises
+    ------
+    InvalidInputError
+        If two properties would have the same name.
+    FileFormatError
+        If the file cannot be written.
+    """
+    return _write(path, points, None, fields, units)
+
+
+def _write(
+    path: Path, vertices: NDArray[np.float64], faces: Indices | None, fields: Fields, units: Units
+) -> tuple[str, ...]:
+    """Write the header, the vertices and the faces, if there are any; returns what had to be changed."""
     properties, notes = _properties(fields)
     records = np.dtype(
         [(axis, "<f8") for axis in _AXES] + [(name, v.dtype.newbyteorder("<")) for name, v in properties.items()]
     )
     with replacing(path) as temporary, temporary.open("wb") as file:
-        file.write(_header(mesh, properties, units).encode("ascii"))
-        _write_vertices(file, mesh, properties, records)
-        _write_faces(file, mesh)
+        file.write(_header(len(vertices), None if faces is None else len(faces), properties, units).encode("ascii"))
+        _write_vertices(file, vertices, properties, records)
+        if faces is not None:
+            _write_faces(file, faces)
     return notes
 
 
@@ -224,14 +256,15 @@ def _properties(fields: Fields) -> tuple[dict[str, NDArray[Any]], tuple[str, ...
     return properties, tuple(notes)
 
 
-def _header(mesh: TriangleMesh, properties: Fields, units: Units) -> str:
+def _header(n_vertices: int, n_faces: int | None, properties: Fields, units: Units) -> str:
     """The header, with a comment for each field that has a unit."""
     comments = [f"comment {_plain(name)} = {_plain(text)}" for name, text in units.items()]
     declared = [f"property double {axis}" for axis in _AXES]
     declared += [f"property {_TYPE_NAMES[v.dtype.str[1:]]} {name}" for name, v in properties.items()]
-    lines = ["ply", "format binary_little_endian 1.0", *comments, f"element vertex {mesh.n_vertices}", *declared]
-    lines += [f"element face {mesh.n_faces}", "property list uchar int vertex_indices", "end_header"]
-    return "\n".join(lines) + "\n"
+    lines = ["ply", "format binary_little_endian 1.0", *comments, f"element vertex {n_vertices}", *declared]
+    if n_faces is not None:
+        lines += [f"element face {n_faces}", "property list uchar int vertex_indices"]
+    return "\n".join([*lines, "end_header"]) + "\n"
 
 
 def _plain(text: str) -> str:
@@ -241,22 +274,22 @@ def _plain(text: str) -> str:
     return " ".join(text.split()).encode("ascii", "replace").decode()
 
 
-def _write_vertices(file: BinaryIO, mesh: TriangleMesh, properties: Fields, records: np.dtype) -> None:
+def _write_vertices(file: BinaryIO, vertices: NDArray[np.float64], properties: Fields, records: np.dtype) -> None:
     """Write positions and fields, block by block."""
-    for start in range(0, mesh.n_vertices, _BLOCK):
+    for start in range(0, len(vertices), _BLOCK):
         rows = slice(start, start + _BLOCK)
-        block = np.empty(len(mesh.vertices[rows]), records)
+        block = np.empty(len(vertices[rows]), records)
         for k, axis in enumerate(_AXES):
-            block[axis] = mesh.vertices[rows, k]
+            block[axis] = vertices[rows, k]
         for name, values in properties.items():
             block[name] = values[rows]
         file.write(block.data)
 
 
-def _write_faces(file: BinaryIO, mesh: TriangleMesh) -> None:
+def _write_faces(file: BinaryIO, faces: Indices) -> None:
     """Write the triangles, block by block."""
-    for start in range(0, mesh.n_faces, _BLOCK):
-        faces = mesh.faces[start : start + _BLOCK]
-        block = np.empty(len(faces), [("n", "u1"), ("corners", "<i4", (3,))])
-        block["n"], block["corners"] = 3, faces
+    for start in range(0, len(faces), _BLOCK):
+        corners = faces[start : start + _BLOCK]
+        block = np.empty(len(corners), [("n", "u1"), ("corners", "<i4", (3,))])
+        block["n"], block["corners"] = 3, corners
         file.write(block.data)

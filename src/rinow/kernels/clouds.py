@@ -11,6 +11,8 @@ FLAT = 1e-12
 """Share of the largest variance that the second one must have for a plane to be determined."""
 BOX = 4.0
 """Half side of the square that bounds a Voronoi cell, in distances of the farthest neighbour looked at."""
+LEVEL = 0.3
+"""Points nearer to the normal, by the square of the sine of the angle at the point, are those of another sheet."""
 OUTSIDE = -1
 """Owner of the sides of that square."""
 
@@ -72,20 +74,24 @@ def clip(x, y, owner, n, px, py, who, cell, owners):
 
 
 @kernel
-def star_of(v, near, points, normal, plane, work):
+def star_of(v, near, points, normal, t, skew, plane, work):
     """Write the owners of the sides of the Voronoi cell of v, around the normal; how many.
 
-    These are the neighbours in the Delaunay triangulation of the points over the tangent plane.
+    These are the neighbours in the Delaunay triangulation of the points over the tangent plane, sheared by `skew`
+    along its unit vector t.
     """
     x, y, owner, cell, owners = work
-    t = monge.some_tangent(normal)
     b = monge.cross(normal, t)
     far = 0.0
     for i in range(near.shape[0]):
         w = near[i]
         dx, dy, dz = points[w, 0] - points[v, 0], points[w, 1] - points[v, 1], points[w, 2] - points[v, 2]
-        plane[i, 0], plane[i, 1] = t[0] * dx + t[1] * dy + t[2] * dz, b[0] * dx + b[1] * dy + b[2] * dz
-        far = max(far, dx * dx + dy * dy + dz * dz)
+        px, py = t[0] * dx + t[1] * dy + t[2] * dz, b[0] * dx + b[1] * dy + b[2] * dz
+        distance2 = dx * dx + dy * dy + dz * dz
+        if px * px + py * py < LEVEL * distance2:
+            px = py = 0.0
+        plane[i, 0], plane[i, 1] = px + skew * py, py
+        far = max(far, distance2)
     size = BOX * math.sqrt(far)
     x[0], x[1], x[2], x[3] = -size, size, size, -size
     y[0], y[1], y[2], y[3] = -size, -size, size, size
@@ -98,7 +104,7 @@ def star_of(v, near, points, normal, plane, work):
 
 
 @parallel_kernel
-def stars(points, normals, near, n_blocks, out, counts, gaps):
+def stars(points, normals, tangents, skew, near, n_blocks, out, counts, gaps):
     """Write to out[v] the neighbours of v around its normal, how many, and the widest angle between two of them."""
     k = near.shape[1]
     for block in prange(n_blocks):
@@ -108,7 +114,8 @@ def stars(points, normals, near, n_blocks, out, counts, gaps):
         n_points = points.shape[0]
         for v in range(n_points * block // n_blocks, n_points * (block + 1) // n_blocks):
             normal = (normals[v, 0], normals[v, 1], normals[v, 2])
-            n = star_of(v, near[v], points, normal, plane, work) if normal != (0.0, 0.0, 0.0) else 0
+            t = (tangents[v, 0], tangents[v, 1], tangents[v, 2])
+            n = star_of(v, near[v], points, normal, t, skew, plane, work) if normal != (0.0, 0.0, 0.0) else 0
             counts[v], gaps[v], before, first = 0, 0.0, 0.0, 0.0
             for j in range(n):
                 i = work[2][j]
@@ -140,10 +147,57 @@ def star_area_vectors(points, normals, star, counts, out):
         out[v, 0], out[v, 1], out[v, 2] = sx, sy, sz
 
 
+@parallel_kernel
+def long_axes(points, normals, star, counts, out):
+    """Write the tangent along which the neighbours in each star are farthest, in the mean square; any for none."""
+    for v in prange(points.shape[0]):
+        n = (normals[v, 0], normals[v, 1], normals[v, 2])
+        t = monge.some_tangent(n)
+        b = monge.cross(n, t)
+        xx = xy = yy = 0.0
+        for j in range(counts[v]):
+            p = star[v, j]
+            dx, dy, dz = points[p, 0] - points[v, 0], points[p, 1] - points[v, 1], points[p, 2] - points[v, 2]
+            x, y = t[0] * dx + t[1] * dy + t[2] * dz, b[0] * dx + b[1] * dy + b[2] * dz
+            xx, xy, yy = xx + x * x, xy + x * y, yy + y * y
+        angle = 0.5 * math.atan2(2.0 * xy, xx - yy)
+        axis = monge.combination(math.cos(angle), t, math.sin(angle), b)
+        out[v, 0], out[v, 1], out[v, 2] = axis[0], axis[1], axis[2]
+
+
+@parallel_kernel
+def circle_diameters(points, triangles, out):
+    """Write the diameters of the circles through three points each; inf if these are on a line."""
+    for f in prange(triangles.shape[0]):
+        p, q, r = triangles[f, 0], triangles[f, 1], triangles[f, 2]
+        a = (points[q, 0] - points[p, 0], points[q, 1] - points[p, 1], points[q, 2] - points[p, 2])
+        b = (points[r, 0] - points[p, 0], points[r, 1] - points[p, 1], points[r, 2] - points[p, 2])
+        c = monge.combination(1.0, b, -1.0, a)
+        across = monge.cross(a, b)
+        double_area = math.sqrt(across[0] ** 2 + across[1] ** 2 + across[2] ** 2)
+        product = 1.0
+        for side in (a, b, c):
+            product *= math.sqrt(side[0] ** 2 + side[1] ** 2 + side[2] ** 2)
+        out[f] = product / double_area if double_area > 0.0 else np.inf
+
+
+@kernel
+def take_triangles(sides, n_sides, taken):
+    """Take triangles in their order unless a directed side of theirs, by its number, is in one taken before."""
+    used = np.zeros(n_sides, np.bool_)
+    for f in range(sides.shape[0]):
+        a, b, c = sides[f, 0], sides[f, 1], sides[f, 2]
+        taken[f] = not (used[a] or used[b] or used[c])
+        if taken[f]:
+            used[a] = used[b] = used[c] = True
+
+
 @kernel
 def carry_signs(order, parents, normals, signs):
-    """Write to signs the sign that each normal needs to agree with its parent's, whose sign is known before."""
-    for i in range(1, order.shape[0]):
-        v, p = order[i], parents[order[i]]
-        cosine = normals[v, 0] * normals[p, 0] + normals[v, 1] * normals[p, 1] + normals[v, 2] * normals[p, 2]
-        signs[v] = signs[p] if cosine >= 0.0 else -signs[p]
+    """Write the sign that each normal needs to agree with its parent's; 1 where the parent is no point."""
+    for v in order:
+        p = parents[v]
+        signs[v] = 1.0
+        if p < signs.shape[0]:
+            cosine = normals[v, 0] * normals[p, 0] + normals[v, 1] * normals[p, 1] + normals[v, 2] * normals[p, 2]
+            signs[v] = signs[p] if cosine >= 0.0 else -signs[p]

@@ -6,7 +6,7 @@ import time
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from rinow.curvature.status import VertexStatus
 from rinow.curvature.surface import SurfaceCurvature, surface_curvature
 from rinow.mesh import TriangleMesh
 
-__all__ = ["FIELDS", "SIGNED", "STATUSES", "SurfaceStudy", "mesh_counts", "study_surface"]
+__all__ = ["FIELDS", "SIGNED", "STATUSES", "CurvatureStudy", "SurfaceStudy", "mesh_counts", "study_surface"]
 
 Floats = NDArray[np.float64]
 
@@ -55,15 +55,13 @@ def field_unit(name: str, unit: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class SurfaceStudy:
-    """Curvature of a surface with what is needed to read it.
+class CurvatureStudy:
+    """Curvature with what is needed to read it.
 
     Attributes
     ----------
-    mesh : TriangleMesh
-        The surface, unchanged.
     curvature : SurfaceCurvature
-        Values in the order of its vertices.
+        Values in the order of the vertices or points.
     unit : str
         Name of the unit of length; "length" when nobody said.
     seconds : dict of str to float
@@ -72,11 +70,11 @@ class SurfaceStudy:
         What was asked for: method, quality, radius (None: the choice of the method).
     """
 
-    mesh: TriangleMesh
     curvature: SurfaceCurvature
     unit: str = "length"
     seconds: dict[str, float] = field(default_factory=dict)
     settings: dict[str, str | float | None] = field(default_factory=dict)
+    places: ClassVar[str] = "vertices"
 
     @contextmanager
     def timed(self, step: str) -> Generator[None]:
@@ -88,7 +86,7 @@ class SurfaceStudy:
     @property
     def notes(self) -> tuple[str, ...]:
         """What the reader and the method had to do, one sentence each."""
-        return (*self.mesh.notes, *self.curvature.notes)
+        return self.curvature.notes
 
     def fields(self, chosen: str = "gaussian") -> dict[str, Floats]:
         """The Gaussian curvature, the chosen field and those that hold any value, in the order of `FIELDS`."""
@@ -125,6 +123,24 @@ class SurfaceStudy:
             levels = np.percentile(finite, PERCENTILES) if len(finite) else np.full(len(PERCENTILES), np.nan)
             table[name] = {str(p): float(level) for p, level in zip(PERCENTILES, levels, strict=True)}
         return table
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceStudy(CurvatureStudy):
+    """Curvature of a surface, and the surface.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The surface, unchanged.
+    """
+
+    mesh: TriangleMesh = field(kw_only=True)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the reader and the method had to do, one sentence each."""
+        return (*self.mesh.notes, *self.curvature.notes)
 
 
 def mesh_counts(mesh: TriangleMesh) -> dict[str, int]:
@@ -174,4 +190,4 @@ def study_surface(
     start = time.perf_counter()
     curvature = surface_curvature(mesh, method=method, quality=quality, radius=radius, progress=progress)
     seconds = {"curvature": time.perf_counter() - start}
-    return SurfaceStudy(mesh, curvature, unit, seconds, {"method": method, "quality": quality, "radius": radius})
+    return SurfaceStudy(curvature, unit, seconds, {"method": method, "quality": quality, "radius": radius}, mesh=mesh)

@@ -1,0 +1,80 @@
+"""Curvature of a cloud from fits over its links, with what its triangles know better."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow._executor import SerialExecutor
+from rinow.curvature.cloud_sheet import Cloud
+from rinow.curvature.estimate import Estimate
+from rinow.curvature.patch_tasks import Tasks
+from rinow.curvature.scale import Ladder, sample
+from rinow.curvature.sectional import (
+    EDGE_RINGS,
+    QUALITIES,
+    blended_patches,
+    flat_vertices,
+    flatten,
+    repair_ends,
+    rings_around,
+    shrinkage,
+    standard_errors,
+)
+from rinow.curvature.unresolved import with_detail
+from rinow.kernels import stencils
+from rinow.mesh import TriangleMesh
+
+__all__ = ["cloud_estimate"]
+
+UNDECIDED = 1.5
+"""Standard error times radius² above which nothing is known, as for metric spaces: points on surfaces stay below 1,
+those that fill a part of space have 2 to 25."""
+
+
+def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
+    """The estimate of `sectional` for a cloud, in the order of its sheet.
+
+    Parameters
+    ----------
+    cloud : Cloud
+        The cloud.
+    radius : float or None
+        Radius of all balls, in the unit of length; by default the data decide.
+
+    Notes
+    -----
+    Edge lengths are not examined: the diagonals of a Delaunay triangulation change along lines, where angle defects
+    do not converge.
+    """
+    sheet, quality, tasks = cloud.sheet, QUALITIES["best"], Tasks(SerialExecutor())
+    ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
+    samples = sample(sheet, ladder, quality.selects, tasks)
+    at_edge = rings_around(sheet, cloud.at_border, EDGE_RINGS)
+    out, direction1, direction2, noise = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)
+    out[:, 0] *= shrinkage(samples, out)
+    gaussian, mean, risk, reach = out[:, :4].T.copy()
+    half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
+    spread = standard_errors(out, quality, cloud.at_border)
+    principal = mean + half, mean - half, direction1, direction2
+    fit = Estimate(gaussian, spread, reach, mean, *principal, np.sqrt(noise), sheet.spacing, risk)
+    mesh = TriangleMesh(sheet.vertices, cloud.faces) if len(cloud.faces) else None
+    if mesh is not None:
+        repair_ends(mesh, fit, radius is None)
+        t = mesh.topology
+        told = rings_around(t, t.vertex_is_used & ~t.vertex_is_boundary, 1)
+        flatten(fit, flat_vertices(mesh) & told)
+    if radius is not None:
+        return fit
+    fit = fit if mesh is None else with_detail(mesh, fit)
+    fit.gaussian[(fit.spread * fit.radius**2 > UNDECIDED) | _too_curved(cloud, fit)] = np.nan
+    return fit
+
+
+def _too_curved(cloud: Cloud, fit: Estimate) -> NDArray[np.bool_]:
+    """(n_points,): neighbours are farther, in the mean, than any two points of the smaller circle of curvature."""
+    sheet = cloud.sheet
+    lengths = np.empty(len(sheet.vertices))
+    stencils.mean_edge_lengths(sheet.vertices, sheet.offsets, sheet.neighbours, lengths)
+    largest = np.fmax(np.abs(fit.k1), np.abs(fit.k2))  # type: ignore[arg-type]
+    return largest * lengths > 2.0

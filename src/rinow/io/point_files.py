@@ -1,0 +1,120 @@
+"""Files of points without faces: whether a file is one, the points, and points with fields."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.errors import FileFormatError
+from rinow.io.atomic import check_target
+from rinow.io.faults import reading, writing
+from rinow.io.fields import renamed
+from rinow.io.ply import has_faces, write_ply_points
+from rinow.io.tables import TABLE_SUFFIXES, read_points, write_columns
+
+__all__ = ["check_point_outputs", "holds_points", "read_cloud", "write_points"]
+
+Floats = NDArray[np.float64]
+
+WRITTEN = (".ply", ".csv", ".npz")
+AXES = ("x", "y", "z")
+
+
+def holds_points(path: Path) -> bool:
+    """Whether a file holds points only: a table, or a PLY or NPZ file without faces.
+
+    Raises
+    ------
+    FileFormatError
+        If the header of a PLY file has a fault.
+    """
+    suffix = path.suffix.lower()
+    if not path.is_file() or not path.stat().st_size:
+        return False
+    if suffix == ".ply":
+        with reading(path, "PLY"):
+            return not has_faces(path)
+    if suffix == ".npz":
+        if not zipfile.is_zipfile(path):
+            return False
+        with zipfile.ZipFile(path) as archive:
+            return "F.npy" not in archive.namelist()
+    return suffix in TABLE_SUFFIXES
+
+
+def read_cloud(path: Path) -> tuple[Floats, tuple[str, ...]]:
+    """Points in space, and what was left out of the file, one sentence each.
+
+    Raises
+    ------
+    FileFormatError
+        If the file has a fault, or its rows have less than three numbers.
+    """
+    points = read_points(path)
+    width = points.shape[1]
+    if width < 3:
+        raise FileFormatError(f"{path} has rows of {width} numbers; a point in space has three: x, y and z.")
+    notes = () if width == 3 else (f"The rows have {width} numbers; the first three are taken for x, y and z.",)
+    return np.ascontiguousarray(points[:, :3]), notes
+
+
+def check_point_outputs(outputs: Iterable[Path], *, inputs: Iterable[Path] = ()) -> None:
+    """Refuse outputs for points that could not be written later.
+
+    Raises
+    ------
+    FileFormatError
+        If an output has another suffix than .ply, .csv and .npz, is an input, occurs twice, or cannot be made.
+    """
+    sources, seen = {os.path.realpath(path) for path in inputs}, set[str]()
+    for path in outputs:
+        place = os.path.realpath(path)
+        if path.suffix.lower() not in WRITTEN:
+            raise FileFormatError(f"{path} cannot hold points without faces; choose one of {' '.join(WRITTEN)}.")
+        if place in sources:
+            raise FileFormatError(f"{path} is the input; choose another name for the output.")
+        if place in seen:
+            raise FileFormatError(f"{path} is named twice as an output; choose another name.")
+        seen.add(place)
+        check_target(path)
+
+
+def write_points(
+    path: Path, points: Floats, fields: Mapping[str, NDArray[Any]], units: Mapping[str, str], quality: str
+) -> tuple[str, ...]:
+    """Write points with fields as PLY, CSV or NPZ, whole or not at all; returns what had to be changed.
+
+    Parameters
+    ----------
+    path : Path
+        A file with one of these suffixes.
+    points : (n_points, 3) ndarray of float
+        Positions.
+    fields : mapping of str to (n_points, ...) ndarray
+        One column each; shape (n_points, 3) makes three: name_x, name_y, name_z.
+    units : mapping of str to str
+        What each field means.
+    quality : str
+        Name of the field that PLY files call ``quality``.
+
+    Raises
+    ------
+    FileFormatError
+        If the file cannot be written.
+    """
+    if path.suffix.lower() == ".ply":
+        names = {quality: "quality"}
+        with writing(path, "PLY"):
+            return write_ply_points(path, points, renamed(fields, names), renamed(units, names))
+    columns: dict[str, NDArray[Any]] = dict(zip(AXES, points.T, strict=True))
+    for name, values in fields.items():
+        parts = {name: values} if values.ndim == 1 else {f"{name}_{a}": v for a, v in zip(AXES, values.T, strict=True)}
+        columns.update(parts)
+    write_columns(path, columns, "; ".join(f"{name}: {units[name]}" for name in fields if name in units))
+    return ()

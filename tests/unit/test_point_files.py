@@ -1,0 +1,78 @@
+"""Files of points without faces on the command line: values, outputs, and one sentence for bad input."""
+
+import json
+
+import numpy as np
+import pytest
+
+import rinow
+import shapes
+from rinow.cli.main import main
+from rinow.io.point_files import holds_points, read_cloud
+from rinow.io.tables import read_points
+
+
+@pytest.fixture
+def cloud(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    points = 2 * shapes.irregular_sphere(300).vertices
+    np.savetxt("points.xyz", points, fmt="%.17g")
+    np.savetxt("six.csv", np.hstack([points, points]), delimiter=",", header="x,y,z,nx,ny,nz", comments="")
+    np.save("points.npy", points)
+    np.savez("points.npz", points=points)
+    rows = "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in points.tolist())
+    head = "ply\nformat ascii 1.0\nelement vertex 300\nproperty double x\nproperty double y\nproperty double z\n"
+    (tmp_path / "points.ply").write_text(head + "end_header\n" + rows)
+    return points
+
+
+@pytest.mark.parametrize("name", ["points.xyz", "six.csv", "points.npy", "points.npz", "points.ply"])
+def test_curvature_and_info_of_points(cloud, capsys, name):
+    assert main(["curvature", name, "--json"]) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record["method"] == "point_cloud" and record["counts"]["points"] == 300
+    assert record["percentiles"]["mean"]["50"] == pytest.approx(0.5, rel=1e-6)
+    assert any("no faces" in note for note in record["notes"])
+    assert main(["info", name]) == 0
+    assert "cloud of points" in capsys.readouterr().out
+
+
+def test_outputs_carry_the_values(cloud, capsys):
+    assert main(["curvature", "points.xyz", "-o", "out.ply", "-o", "out.csv", "-o", "out.npz"]) == 0
+    assert "point_cloud; points: 300 OK" in capsys.readouterr().out
+    expected = rinow.point_cloud_curvature(cloud)
+    np.testing.assert_array_equal(read_points("out.ply"), cloud)
+    with np.load("out.npz") as arrays:
+        np.testing.assert_array_equal(arrays["gaussian"], expected.gaussian)
+        np.testing.assert_array_equal(arrays["direction1_x"], expected.direction1[:, 0])
+    table = read_points("out.csv")
+    np.testing.assert_array_equal(table[:, :4], np.column_stack([cloud, expected.gaussian]))
+
+
+def test_a_mesh_is_no_cloud(cloud, tmp_path):
+    shape = shapes.tetrahedron()
+    for name in ("mesh.ply", "mesh.npz"):
+        rinow.write_mesh(name, (shape.vertices, shape.faces))
+        assert not holds_points(tmp_path / name)
+    assert not holds_points(tmp_path / "missing.xyz")
+    note = "The rows have 6 numbers; the first three are taken for x, y and z."
+    assert read_cloud(tmp_path / "six.csv")[1] == (note,)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["points.xyz", "--method", "lifted"], "--method needs faces, and points.xyz holds points only"),
+        (["points.xyz", "--quality", "fast"], "--quality needs faces"),
+        (["points.xyz", "--picture", "a.png"], "--picture needs faces"),
+        (["points.xyz", "-o", "out.obj"], "out.obj cannot hold points without faces; choose one of .ply .csv .npz"),
+        (["points.ply", "-o", "points.ply"], "points.ply is the input"),
+        (["points.xyz", "-o", "a.csv", "-o", "a.csv"], "a.csv is named twice"),
+        (["two.csv"], "two.csv has rows of 2 numbers; a point in space has three"),
+    ],
+)
+def test_bad_input_is_one_sentence(cloud, capsys, arguments, message):
+    np.savetxt("two.csv", cloud[:, :2], delimiter=",")
+    assert main(["curvature", *arguments]) == 1
+    err = capsys.readouterr().err
+    assert message in err and err.count("\n") == 1
