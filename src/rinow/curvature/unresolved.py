@@ -20,9 +20,9 @@ Floats = NDArray[np.float64]
 
 NOISY = 0.001
 """Noise of the positions, over the spacing, below which fits have resolved everything."""
-OF_FITS, OF_CUBICS, OF_QUARTICS = (0.0, 0.2), (-0.1, 0.1), (0.1, 0.3)
-"""Correlations of neighbours up to which a difference is noise, and from which detail: of quadrics from fits, of single
-rings from cubics, of quartics from cubics.  White noise has -0.14, -0.25 and -0.1."""
+OF_FITS, OF_CUBICS, OF_QUARTICS = (-0.05, 0.05), (-0.1, 0.1), (0.1, 0.3)
+"""Correlations of neighbours up to which a difference is noise, and from which detail: of quadrics or quartics from
+fits, of single rings from cubics, of quartics from cubics.  White noise has -0.14, -0.25 and -0.1."""
 LEFT = (0.2, 0.1)
 """Correlations of single rings' differences from quartics from which on these have missed detail, down to noise."""
 HALF = 0.5
@@ -46,7 +46,9 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     around it.  So where the difference of two estimates is positively correlated between neighbours it is detail that
     one of them has missed.
 
-    - Quadrics of two rings against fits, where these speak of noise: with detail in between, rings are taken.
+    - Quartics of three rings against fits, where these speak of noise: with detail in between, rings are taken.  They
+      are not even computed where quadrics of two rings differ by noise; with little noise these differ everywhere, by
+      what a quadric itself misses of a smooth surface.
     - Single rings against cubics of three rings, which they are averaged with as far as those miss detail.
     - Quartics against cubics.  They come nearest to the truth, if there is detail in between, and if they in turn leave
       no detail to single rings; if they do, then waves are too short for any polynomial.
@@ -57,13 +59,16 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
         is_noisy = estimate.noise > NOISY * estimate.spacing
     if not is_noisy.any():
         return estimate
-    star = _two_rings(mesh)
-    share = _common_share(mesh, (star.mean - estimate.mean) * estimate.spacing, OF_FITS)  # type: ignore[operator]
+    spacing, star, jets = estimate.spacing, _two_rings(mesh), np.empty((mesh.n_vertices, 2, 2))
+    if not _common_share(mesh, (star.mean - estimate.mean) * spacing, OF_FITS).any():  # type: ignore[operator]
+        return estimate
+    ring_jets.ring_jets(stencil_surface(mesh), N_BLOCKS, jets)
+    share = _common_share(mesh, (jets[:, 1, 1] - estimate.mean) * spacing, OF_FITS)
     share[~(is_noisy & np.isfinite(star.gaussian) & np.isfinite(estimate.gaussian))] = 0.0
     share[mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
     if not share.any():
         return estimate
-    return _blend(estimate, _with_detail_of_rings(mesh, star, estimate.spacing), share)
+    return _blend(estimate, _with_detail_of_rings(mesh, star, jets, spacing), share)
 
 
 def _two_rings(mesh: TriangleMesh) -> Estimate:
@@ -75,11 +80,9 @@ def _two_rings(mesh: TriangleMesh) -> Estimate:
     return Estimate(gaussian, spread, reach, mean, q.k1, q.k2, q.direction1, q.direction2)
 
 
-def _with_detail_of_rings(mesh: TriangleMesh, star: Estimate, spacing: Floats) -> Estimate:
+def _with_detail_of_rings(mesh: TriangleMesh, star: Estimate, jets: Floats, spacing: Floats) -> Estimate:
     """The stars with curvatures of cubics, moved towards single rings and quartics where those show detail."""
-    jets, single = np.empty((mesh.n_vertices, 2, 2)), single_rings(mesh)
-    ring_jets.ring_jets(stencil_surface(mesh), N_BLOCKS, jets)
-    cubic, quartic = jets[:, 0], jets[:, 1]
+    single, cubic, quartic = single_rings(mesh), jets[:, 0], jets[:, 1]
 
     def share(step: Floats, correlations: tuple[float, float]) -> Floats:
         return _common_share(mesh, step[:, 1] * spacing, correlations)
