@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
-from rinow.curvature.angle_defect import longest_edges
+from rinow.curvature.angle_defect import longest_edges, ring_deviations
 from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, sizes_of_discs
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.patch_tasks import Tasks, add_patches
@@ -285,15 +285,20 @@ def _doubt_ends(mesh: TriangleMesh, estimate: Estimate) -> None:
 
 
 def _fill_in(mesh: TriangleMesh, estimate: Estimate) -> None:
-    """Take two rings and a quadric, or Euler's formula alone, where no patch has a fit."""
-    rows = np.flatnonzero(~np.isfinite(estimate.gaussian) & mesh.topology.vertex_is_used)
+    """Take two rings and a quadric, or Euler's formula alone, where no patch has a fit.
+
+    What neighbours with a fit differ by is all that tells an error there.
+    """
+    has_fit = np.isfinite(estimate.gaussian)
+    rows = np.flatnonzero(~has_fit & mesh.topology.vertex_is_used)
     if not len(rows):
         return
     frames = empty_frames(len(rows))
     quadrics.ring_quadrics(rows, stencil_surface(mesh), True, N_BLOCKS, frames)
     estimate.gaussian[rows] = frames.k1 * frames.k2
     estimate.radius[rows] = longest_edges(mesh)[rows]
-    estimate.spread[rows] = np.nan
+    beside_fits, deviations = rings_around(mesh.topology, has_fit, 1), ring_deviations(mesh, estimate.gaussian)
+    estimate.spread[rows] = np.where(beside_fits, deviations, np.nan)[rows]
     for name in ("k1", "k2", "direction1", "direction2"):
         getattr(estimate, name)[rows] = getattr(frames, name)
     if estimate.mean is not None:
