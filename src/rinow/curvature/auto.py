@@ -49,7 +49,8 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     in one direction the long edges make balls large.  Structured meshes of that kind have accurate angle defects
     nevertheless.  The expected squared error of the latter is that of `intrinsic` plus
     :math:`(K \max_e (\kappa_e c_e)^2/12)^2` for the chords c of normal curvature κ that stand for geodesics, which edge
-    lengths alone cannot show.  The weights are the inverse squared errors.
+    lengths alone cannot show.  The weights are the inverse squared errors, as far as defects have no noise of chords
+    that had to be taken out of them: without structure errors of neighbouring defects do not cancel.
 
     Where fits call detail noise that rings of neighbouring vertices have in common, estimates from one to three rings
     are taken (`rinow.curvature.unresolved`).
@@ -79,6 +80,7 @@ def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> 
     other = found.variance + found.squared_bias + chords
     hopeful &= np.isfinite(other) & np.isfinite(found.gaussian)
     share = np.divide(risk, risk + other, out=np.zeros_like(risk), where=hopeful & (risk > 0.0))
+    share *= 1.0 - np.nan_to_num(found.on_arcs)
     step = np.where(share > 0.0, share * (found.gaussian - estimate.gaussian), 0.0)
     spread = np.where(share > 0.5, QUALITIES[quality].calibration * np.sqrt(other), estimate.spread)
     return estimate.with_gaussian(estimate.gaussian + step, spread)
