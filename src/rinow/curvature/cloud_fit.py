@@ -8,19 +8,18 @@ from numpy.typing import NDArray
 from rinow._executor import SerialExecutor
 from rinow.curvature.cloud_sheet import Cloud
 from rinow.curvature.estimate import Estimate
+from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks
 from rinow.curvature.scale import Ladder, sample
 from rinow.curvature.sectional import (
     EDGE_RINGS,
     QUALITIES,
     blended_patches,
-    flat_vertices,
-    flatten,
     repair_ends,
-    rings_around,
     shrinkage,
     standard_errors,
 )
+from rinow.curvature.stencils import rings_around
 from rinow.curvature.unresolved import with_detail
 from rinow.kernels import stencils
 from rinow.mesh import TriangleMesh

@@ -12,23 +12,20 @@ from rinow._executor import Executor, SerialExecutor
 from rinow.curvature.angle_defect import longest_edges, ring_deviations
 from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, sizes_of_discs
 from rinow.curvature.estimate import Estimate
+from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
 from rinow.curvature.sheet import patch_sheet
-from rinow.curvature.stencils import N_BLOCKS, empty_frames, stencil_surface
+from rinow.curvature.stencils import N_BLOCKS, empty_frames, rings_around, stencil_surface
 from rinow.curvature.strays import stray_vertices
-from rinow.kernels import balls, patch_driver, patches, quadrics, risks, stencils
+from rinow.kernels import balls, patch_driver, patches, quadrics, risks
 from rinow.mesh import TriangleMesh
-from rinow.topology import Topology
 
 __all__ = [
     "EDGE_RINGS",
     "QUALITIES",
     "blended_patches",
-    "flat_vertices",
-    "flatten",
     "repair_ends",
-    "rings_around",
     "sectional",
     "shrinkage",
     "standard_errors",
@@ -42,9 +39,6 @@ QUARTIC = 3
 """Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
 PASSES = 2
 """Averages of squared differences over the centres around."""
-FLAT_DEFECT = 1e-10
-"""Angle defects below this, in radians, are rounding: a neighbourhood of such vertices is isometric to the plane."""
-FLAT_RINGS = 3
 EDGE_CALIBRATION = 1.5
 """Standard error at a boundary over that inside: biases are averaged over places that have points on all sides."""
 APART = 3.0
@@ -228,37 +222,6 @@ def shrinkage(samples: Samples, out: Floats) -> Floats:
     risks.disc_shrinkage(samples.member_starts, samples.members, out[:, 0], out[:, 2], factors)
     risks.vertex_means(samples.starts, samples.near, factors, shrinkage)
     return shrinkage
-
-
-def flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
-    """(n_vertices,): every interior vertex within three rings has the angle 2π."""
-    t = mesh.topology
-    curved = (np.abs(mesh.vertex_angle_defects) > FLAT_DEFECT) & ~t.vertex_is_boundary
-    if curved.mean() > 0.99:
-        return ~curved & False
-    return ~rings_around(t, curved, FLAT_RINGS)
-
-
-def flatten(estimate: Estimate, is_flat: NDArray[np.bool_]) -> None:
-    """Take K = 0 at some vertices; the mean curvature stays."""
-    rows = np.flatnonzero(is_flat & np.isfinite(estimate.gaussian))
-    if estimate.mean is None or not len(rows):
-        return
-    estimate.gaussian[rows] = 0.0
-    for name, limit in (("k1", np.maximum), ("k2", np.minimum)):
-        getattr(estimate, name)[rows] = limit(2.0 * estimate.mean[rows], 0.0)
-
-
-def rings_around(graph: Topology | balls.Sheet, marked: NDArray[np.bool_], n_rings: int) -> NDArray[np.bool_]:
-    """(n_vertices,): a marked vertex is at most so many edges away."""
-    offsets = graph.neighbour_offsets if isinstance(graph, Topology) else graph.offsets
-    count = marked.astype(np.float64)
-    if marked.any():
-        for _ in range(n_rings):
-            sums = np.empty_like(count)
-            stencils.ring_sums(np.minimum(count, 1.0), offsets, graph.neighbours, sums)
-            count = sums
-    return count > 0.0
 
 
 def _spread_out(values: Floats, index: NDArray[np.intp], n: int) -> Floats:

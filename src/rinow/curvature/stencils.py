@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow.kernels import monge, stencils
+from rinow.kernels import balls, monge, stencils
 from rinow.mesh import TriangleMesh
+from rinow.topology import Topology
 
-__all__ = ["N_BLOCKS", "empty_frames", "local_spacing", "stencil_surface"]
+__all__ = ["N_BLOCKS", "empty_frames", "local_spacing", "rings_around", "stencil_surface"]
 
 N_BLOCKS = 16
 """Pieces a kernel cuts its vertices into; each has scratch of its own."""
@@ -58,3 +59,15 @@ def _ring_sums(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.fl
     sums = np.empty(mesh.n_vertices)
     stencils.ring_sums(values, mesh.topology.neighbour_offsets, mesh.topology.neighbours, sums)
     return sums
+
+
+def rings_around(graph: Topology | balls.Sheet, marked: NDArray[np.bool_], n_rings: int) -> NDArray[np.bool_]:
+    """(n_vertices,): a marked vertex is at most so many edges away."""
+    offsets = graph.neighbour_offsets if isinstance(graph, Topology) else graph.offsets
+    count = marked.astype(np.float64)
+    if marked.any():
+        for _ in range(n_rings):
+            sums = np.empty_like(count)
+            stencils.ring_sums(np.minimum(count, 1.0), offsets, graph.neighbours, sums)
+            count = sums
+    return count > 0.0
