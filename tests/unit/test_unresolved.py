@@ -101,6 +101,16 @@ def test_folds_of_a_few_spacings_are_detail(height, length, noise):
     assert mean < 0.92 * min(relative_error(x, H) for x in (fit.mean, rings.mean, single[:, 1]))
 
 
+@pytest.mark.parametrize(("height", "length", "noise"), [(waves, 4, 0.0), (bumps, 4, 0.0), (bumps, 7, 0.03)])
+def test_total_curvature_of_rings_is_that_of_the_defects(height, length, noise):
+    # By chance alone the total would be off by the square root of the number of vertices times a typical excess, ~2.
+    V, _, _, normals = folded_sphere(height(length))
+    V = V + normals * np.random.default_rng(11).normal(size=(len(V), 1)) * noise * SPACING
+    mesh = rinow.TriangleMesh(V, SPHERE.faces)
+    gaussian = with_detail(mesh, sectional(mesh)).gaussian
+    assert abs((gaussian * mesh.vertex_areas).sum() - 4.0 * np.pi) < 4.0  # 8 to 12 without the correction
+
+
 def test_steiner_formula_of_a_cube():
     # Twelve edges of length 1 that turn by a right angle, eight corners of a right angle and a half.
     mesh = rinow.TriangleMesh(*shapes.cube()[:2])
