@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CycloptsError, Parameter
 
 from rinow._version import __version__
 from rinow.errors import RinowError
@@ -22,6 +22,7 @@ app = App(
     name="rinow",
     version=__version__,
     help="Metric geometry of surfaces and finite metric spaces: distances in, curvature and shape distance out.",
+    default_parameter=Parameter(negative=()),  # each flag has one form
 )
 app.command("rinow.cli.demo:demo")
 app.command("rinow.cli.info:info")
