@@ -1,5 +1,7 @@
 """The command line: outputs, exit codes, and one sentence for every kind of bad input."""
 
+import importlib
+import inspect
 import io
 import json
 import os
@@ -9,7 +11,7 @@ import pytest
 
 import rinow
 import shapes
-from rinow.cli.main import main
+from rinow.cli.main import SUMMARIES, main
 
 V = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
 F = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
@@ -110,6 +112,13 @@ def test_info(folder, capsys):
 )
 def test_wrong_usage_exits_with_2(folder, arguments):
     assert main(arguments) == 2
+
+
+@pytest.mark.parametrize("name", SUMMARIES)
+def test_list_of_commands_says_what_their_docstrings_say(name):
+    command = getattr(importlib.import_module(f"rinow.cli.{name}"), name)
+    documented = inspect.getdoc(command).partition("\n\nParameters")[0]
+    assert documented.split() == SUMMARIES[name].split()
 
 
 def test_help_and_version(capsys):

@@ -27,7 +27,7 @@ def compare(
     metric: Metric | None = None,
     points: bool = False,
     distances: bool = False,
-    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"])] = (),
+    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
     tolerance: float = 1e-4,
     time_limit: float = 60.0,
     verify: bool = False,
@@ -38,8 +38,10 @@ def compare(
 
     Parameters
     ----------
-    a, b
-        Two mesh files; with --points or --distances tables as CSV, NPY or NPZ.
+    a
+        Mesh file; with --points or --distances a table as CSV, NPY or NPZ.
+    b
+        What to compare it with, of the same kind.
     metric
         The distance; by default Hausdorff, for distance matrices Gromov-Hausdorff.
     points

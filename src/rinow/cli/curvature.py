@@ -37,7 +37,7 @@ def curvature(
     mesh: Path,
     /,
     *,
-    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"])] = (),
+    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
     method: Method = "auto",
     quality: Quality = "best",
     radius: float | None = None,

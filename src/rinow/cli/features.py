@@ -21,7 +21,7 @@ def features(
     mesh: Path,
     /,
     *,
-    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"])] = (),
+    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
     picture: Path | None = None,
     up: Literal["x", "y", "z"] = "z",
     json: bool = False,

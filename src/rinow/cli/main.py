@@ -24,13 +24,20 @@ app = App(
     help="Metric geometry of surfaces and finite metric spaces: distances in, curvature and shape distance out.",
     default_parameter=Parameter(negative=()),  # each flag has one form
 )
-app.command("rinow.cli.demo:demo")
-app.command("rinow.cli.info:info")
-app.command("rinow.cli.curvature:curvature")
-app.command("rinow.cli.features:features")
-app.command("rinow.cli.quadruple:quadruple")
-app.command("rinow.cli.compare:compare")
-app.command("rinow.cli.net:net")
+SUMMARIES = {
+    "demo": "Compute the curvature of the shipped mesh `spot`; write a PLY, a PNG and a page into the current folder.",
+    "info": "Count the parts and the faults of a mesh, or of points without faces.",
+    "curvature": "Compute the curvature at every vertex of a mesh or point of a cloud, in the order of the file.\n\n"
+    "Convex with outward normal is positive.",
+    "features": "Find the cone points, creases and corners of a mesh.\n\n"
+    "Angles are in radians in files and JSON and in degrees in the table; convex is positive.",
+    "quadruple": "Print all surfaces of constant curvature in which four points have the given distances.",
+    "compare": "Bound the distance of two meshes, point sets or distance matrices from below and from above.",
+    "net": "Choose vertices of a mesh that are nowhere far from the rest, by exact geodesic distances.",
+}
+"""What the docstrings of the commands begin with, known without importing what they need."""
+for name, summary in SUMMARIES.items():
+    app.command(f"rinow.cli.{name}:{name}", help=summary)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

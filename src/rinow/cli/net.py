@@ -25,7 +25,7 @@ def net(
     size: int | None = None,
     radius: float | None = None,
     start: int = 0,
-    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"])] = (),
+    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
     unit: str = "length",
     json: bool = False,
 ) -> None:

@@ -31,8 +31,18 @@ def quadruple(d12: float, d13: float, d14: float, d23: float, d24: float, d34: f
 
     Parameters
     ----------
-    d12, d13, d14, d23, d24, d34
-        Distances of the points 1, 2, 3, 4, in any unit of length.
+    d12
+        Distance of the points 1 and 2, in any unit of length.
+    d13
+        Of 1 and 3.
+    d14
+        Of 1 and 4.
+    d23
+        Of 2 and 3.
+    d24
+        Of 2 and 4.
+    d34
+        Of 3 and 4.
     json
         Print one JSON object instead of a table.
     """
