@@ -12,6 +12,8 @@ KAPPA = 0.2
 """The squared bias is at least this share of the variance of the comparison that shows it."""
 DECAY = 10.0
 """The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
+ODD = 0.5
+"""The squared bias of an odd order is at least this share of the lesser one of the even orders beside it."""
 EXPLAINED = 3.0
 """A difference between a large and a small ball is a bias of the large one beyond so many squared errors."""
 UNSEEN = 0.3
@@ -46,7 +48,9 @@ def average_rows(values, spacing, power, rows, low, high, links, starts, out):
 def squared_biases(t, ratio, upper, tables, bias, bias_variance, out):
     """Write the squared bias of each order; where the order two above is missing, from the next larger ball `upper`.
 
-    A truncation error of order d is at most r^(d+1) times the square root of points times variance.
+    A truncation error of order d is at most r^(d+1) times the square root of points times variance.  Odd terms hardly
+    reach the second derivatives at the centre, so that an odd order errs about as the even ones beside it: where two
+    odd orders agree by chance, those do not.
     """
     for i in range(N_BIASES):
         own = not math.isnan(tables.variance[t, i + 2]) and not math.isnan(bias[t, i])
@@ -59,6 +63,10 @@ def squared_biases(t, ratio, upper, tables, bias, bias_variance, out):
     for i in range(N_BIASES, N_ORDERS):
         lower = out[i - 4]
         out[i] = out[i - 2] * min(1.0, DECAY * out[i - 2] / lower) if lower > 0.0 else out[i - 2]
+    for i in range(1, N_ORDERS, 2):
+        beside = min(out[i - 1], out[i + 1])
+        if beside > 0.0:
+            out[i] = max(out[i], ODD * beside)
 
 
 @inner
