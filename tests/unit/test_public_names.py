@@ -1,6 +1,8 @@
 """The public surface: every name loads, is documented, and stands in the stub for type checkers."""
 
+import importlib
 import inspect
+import pkgutil
 import re
 from pathlib import Path
 
@@ -31,3 +33,10 @@ def test_every_name_loads_and_is_documented(name):
 def test_unknown_name_raises():
     with pytest.raises(AttributeError, match="no_such_name"):
         _ = rinow.no_such_name
+
+
+@pytest.mark.parametrize("name", ("curvature", "comparison", "kernels"))
+def test_large_packages_say_where_to_find_each_module(name):
+    package = importlib.import_module(f"rinow.{name}")
+    named = set(re.findall(r"`(\w+)`", inspect.getdoc(package)))
+    assert named == {module.name for module in pkgutil.iter_modules(package.__path__)}

@@ -1,1 +1,19 @@
-"""Curvature at points, of curves and of surfaces."""
+"""Curvature at points, of curves and of surfaces.
+
+Curves in any metric space
+    `curves`, over `menger`, `haantjes`, `alt` and `polyline`.
+Points of any metric space
+    `wald_point` and `wald_limit`, `regular`, `polar`, `rinow`; `metric_space`; `metric_rows`, `regions`, `space_fit`.
+Graphs
+    `graph`, over `graph_rows` and `graph_wald`.
+Surfaces
+    `surface` takes a method and gives a result with a status (`status`, `notes`); each method makes an `estimate`.
+
+    - Edge lengths alone: `angle_defect`, `wald`, `geodesic_stars`; `intrinsic` with `flow`, `powers`, `arcs`,
+      `length_noise`, `unseen`.
+    - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale`, `patch_tasks`.
+    - Both: `lifted`; `auto` with `unresolved`.
+    - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`, `flat`, `strays`.
+Points without a mesh
+    `point_cloud`, over `cloud_sheet`, `cloud_faces`, `cloud_strays`, `cloud_fit`; `clouds` as metric spaces.
+"""
