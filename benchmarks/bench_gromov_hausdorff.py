@@ -269,11 +269,11 @@ def main() -> None:
     for group in options.groups:
         instances, limit = GROUPS[group]
         seconds = limit if options.seconds is None else options.seconds
-        for seed, (name, *spaces) in ((seed, row) for seed in options.seeds for row in instances(seed)):
-            if options.only in name:
-                row = show(name, seed, seconds, *spaces, verify=options.verify)
-                if options.page:
-                    write_page(Path(__file__).parents[1], group, [row])
+        wanted = ((seed, *row) for seed in options.seeds for row in instances(seed) if options.only in row[0])
+        for seed, name, *spaces in wanted:
+            row = show(name, seed, seconds, *spaces, verify=options.verify)
+            if options.page:
+                write_page(Path(__file__).parents[1], group, [row])
 
 
 if __name__ == "__main__":
