@@ -221,6 +221,8 @@ REFUSALS = [
     (([[0.0]], [[np.inf]]), {}, "B[0, 0] = inf is not finite; remove the point."),
     (([[0.0]], [[0.0, 1]]), {}, "A has points of dimension 1, B of dimension 2; give the same."),
     (([[0.0]], [[0.0]]), {"tolerance": 0.0}, "tolerance = 0.0 is not positive; give"),
+    (([[0.0]], [[0.0]]), {"tolerance": "1"}, "tolerance has type <U1; give real numbers"),
+    ((np.empty((2, 0)), np.empty((2, 0))), {}, "A is empty; the Hausdorff distance"),
     (([0, 2], [1]), {"space": [[0, 1], [1, 0]]}, "A[1] = 2 is outside 0..1; indices count from 0."),
     (([0], []), {"space": [[0, 1], [1, 0]]}, "B has shape (0,); give one list of at least one index."),
     (([[0.0, 0]], (SQUARE, HALVES)), {}, "A has shape (1, 2); give one point per row, shape (n, 3)."),

@@ -14,7 +14,7 @@ from rinow.comparison.gromov_hausdorff import first_interval
 from rinow.comparison.large_work import Work
 from rinow.comparison.surfaces import eccentricity_gap, sample_of
 from rinow.comparison.symmetry import isometries
-from rinow.errors import NotAMetricError
+from rinow.errors import InvalidMeshError, NotAMetricError
 from rinow.kernels import dives
 
 pytestmark = pytest.mark.usefixtures("compiled_searches")
@@ -146,6 +146,11 @@ def test_mesh_in_two_parts():
     with pytest.raises(NotAMetricError, match="no path from vertex 0 to vertex 9") as caught:
         gromov_hausdorff((np.concatenate([V, V + 5]), np.concatenate([F, F + 9])), [[0.0]])
     assert caught.value.witness == (0, 9)
+
+
+def test_mesh_without_a_face_that_takes_part():
+    with pytest.raises(InvalidMeshError, match="mesh has no face with three different finite vertices"):
+        gromov_hausdorff((grid(2)[0], [[0, 0, 1]]), grid(2))
 
 
 @SLOW

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._arrays import as_number
 from rinow._printing import OneLine
 from rinow.comparison import bounds, steps
 from rinow.comparison.clock import Clock
@@ -179,7 +180,7 @@ def find_approximation(
     """
     clock = Clock.of(time_limit)
     _check_scale(epsilon, "epsilon")
-    if not delta > 0.0:
+    if not as_number(delta, "delta") > 0.0:
         raise InvalidInputError(f"delta = {delta} is not a positive length; distances must differ by less than it.")
     DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
     level = float(np.nextafter(delta, 0.0))
@@ -197,7 +198,7 @@ def find_approximation(
 
 
 def _check_scale(value: float, name: str) -> None:
-    if not value >= 0.0:
+    if not as_number(value, name) >= 0.0:
         raise InvalidInputError(f"{name} = {value} is not a length; give a number >= 0.")
 
 

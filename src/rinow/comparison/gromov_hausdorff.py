@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._arrays import as_floats, as_number
 from rinow._printing import OneLine
 from rinow.comparison import bounds, large, steps
 from rinow.comparison.alignment import align
@@ -153,7 +154,7 @@ def gromov_hausdorff(
     ('maps of subsets', True)
     """
     clock = Clock.of(time_limit)
-    if not 0.0 <= rtol < 1.0:
+    if not 0.0 <= as_number(rtol, "rtol") < 1.0:
         raise InvalidInputError(f"rtol = {rtol} is not a relative tolerance; give a number from 0 to below 1.")
     beyond = _checked_radii(covering_radii)
     samples = samples_of(X, Y, clock)
@@ -173,7 +174,7 @@ def gromov_hausdorff(
 
 def _checked_radii(covering_radii: tuple[float, float]) -> tuple[float, float]:
     """Two finite radii that are not negative."""
-    radii = np.asarray(covering_radii, dtype=np.float64)
+    radii = as_floats(covering_radii, "covering_radii")
     if radii.shape != (2,) or not (np.isfinite(radii) & (radii >= 0.0)).all():
         raise InvalidInputError(f"covering_radii = {covering_radii} are not two lengths >= 0; give one for each space.")
     return float(radii[0]), float(radii[1])

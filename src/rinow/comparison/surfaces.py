@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from rinow import tolerances
 from rinow.comparison.clock import Clock
-from rinow.errors import NotAMetricError
+from rinow.errors import InvalidMeshError, NotAMetricError
 from rinow.geodesics.edge_graph import edge_graph
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh, is_mesh_like
 from rinow.metric_space import as_metric_space
@@ -84,7 +84,7 @@ def sample_of(thing: Any, clock: Clock, clock_of_small: Clock) -> Sample:
     Raises
     ------
     InvalidInputError
-        If it is neither a space nor a mesh.
+        If it is neither a space nor a mesh, or the mesh has no face that takes part.
     NotAMetricError
         If a matrix is not a metric, or the faces of a mesh are not connected.
     """
@@ -117,6 +117,8 @@ def _one_sided(X: Sample, Y: Sample, r: float, s: float) -> float:
 def _connected_edges(mesh: TriangleMesh | IntrinsicMesh) -> tuple[csr_array, Indices]:
     """The edges of a mesh between the vertices that have a face, and these vertices."""
     vertices = np.flatnonzero(mesh.topology.vertex_is_used)
+    if not len(vertices):
+        raise InvalidMeshError("mesh has no face with three different finite vertices; a space has at least one point.")
     return csr_array(edge_graph(mesh)[vertices][:, vertices]), vertices
 
 
