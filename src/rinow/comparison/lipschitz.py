@@ -20,7 +20,7 @@ from rinow.errors import InvalidInputError
 from rinow.kernels import distortion
 from rinow.metric_space import MetricSpace, as_metric_space
 
-__all__ = ["LipschitzDistance", "MetricSpace", "as_map", "dilatation", "lipschitz_distance"]
+__all__ = ["LipschitzDistance", "MetricSpace", "as_map", "dilatation", "infinitely_far", "lipschitz_distance"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -114,7 +114,7 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
     clock = Clock.of(time_limit)
     DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
     if len(DX) != len(DY):
-        return LipschitzDistance(math.inf, math.inf, True, np.empty(0, np.intp), "size")
+        return infinitely_far()
     _check_ratios(DX, DY)
     interval = _first_interval(DX, DY, verify=verify)
     if not interval.closed and not clock.over:
@@ -126,6 +126,11 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
     f[interval.pairs[:, 0]] = interval.pairs[:, 1]
     lower, upper = math.log(interval.lower), math.log(interval.upper)
     return LipschitzDistance(lower, upper, interval.exact, f, interval.by, interval.proof_checked)
+
+
+def infinitely_far() -> LipschitzDistance:
+    """The distance of spaces of unequal size."""
+    return LipschitzDistance(math.inf, math.inf, True, np.empty(0, np.intp), "size")
 
 
 def _check_ratios(DX: Floats, DY: Floats) -> None:
