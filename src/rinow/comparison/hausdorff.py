@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -148,7 +148,9 @@ def as_point_set(points: Any, name: str, dimension: int | None = None) -> Floats
     return P
 
 
-def _of_finite_sets(distances_a: Floats, nearest_a: Indices, distances_b: Floats, nearest_b: Indices) -> Any:
+def _of_finite_sets(
+    distances_a: Floats, nearest_a: Indices, distances_b: Floats, nearest_b: Indices
+) -> HausdorffDistance:
     """The result from the distance and the nearest point of each point."""
     i, j = int(distances_a.argmax()), int(distances_b.argmax())
     far_a, far_b = float(distances_a[i]), float(distances_b[j])
@@ -176,16 +178,7 @@ def _between_subsets(D: Floats, A: Any, B: Any) -> HausdorffDistance:
         chosen.append(indices)
     a, b = chosen
     result = _of_finite_sets(*_row_minima(D, a, b), *_row_minima(D, b, a))
-    return HausdorffDistance(
-        result.lower,
-        result.upper,
-        int(a[result.witness_a]),
-        int(b[result.witness_b]),
-        result.distances_a,
-        result.distances_b,
-        result.directed_a,
-        result.directed_b,
-    )
+    return replace(result, witness_a=int(a[result.witness_a]), witness_b=int(b[result.witness_b]))
 
 
 def _row_minima(D: Floats, rows: Indices, columns: Indices) -> tuple[Floats, Indices]:
