@@ -148,9 +148,7 @@ def as_point_set(points: Any, name: str, dimension: int | None = None) -> Floats
     return P
 
 
-def _of_finite_sets(
-    distances_a: Floats, nearest_a: Indices, distances_b: Floats, nearest_b: Indices
-) -> HausdorffDistance:
+def _of_finite_sets(distances_a: Floats, nearest_a: Indices, distances_b: Floats, nearest_b: Indices) -> Any:
     """The result from the distance and the nearest point of each point."""
     i, j = int(distances_a.argmax()), int(distances_b.argmax())
     far_a, far_b = float(distances_a[i]), float(distances_b[j])
