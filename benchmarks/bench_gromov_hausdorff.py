@@ -4,9 +4,10 @@
                                                 [--verify]
 
 Prints instance, lower and upper bound, whether they are equal, what proved the lower one, and seconds.  Groups:
-plane, space, hops100, hops200, noisy, lipschitz, circle, continuous, intervals, meshes; by default all of them.  The
-correspondence of every result is measured again.  With `--page` the results replace those of the same instances and
-seeds in `benchmarks/distances/results.json`, and docs/reference/benchmark-distances.md is written from all of them.
+plane, space, hops100, hops200, noisy, lipschitz, circle, continuous, intervals, meshes, large-meshes; by default all of
+them.  The correspondence of every result is measured again.  With `--page` each result replaces that of the
+same instance and seed in `benchmarks/distances/results.json` as soon as it is there, and
+docs/reference/benchmark-distances.md is written from all of them.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import math
+import resource
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -22,6 +24,7 @@ from typing import Any
 
 import networkx as nx
 import numpy as np
+from _mesh import jittered_torus
 from distances.report import write_page
 from scipy.sparse.csgraph import shortest_path
 
@@ -121,10 +124,10 @@ def circle(seed: int) -> Iterator[Instance]:
 
 
 def continuous(seed: int) -> Iterator[Instance]:
-    """The circle and the sphere themselves, at distance π/3, by nets of them."""
+    """The circle and the sphere themselves, by nets of them."""
     net = sphere_net(np.random.default_rng(seed), 120)
     radius = 0.35  # 0.2 within the 4000 points, which are themselves closer than 0.1 to every point
-    yield "circle / sphere", polygon(36), net, (math.pi / 36, radius)
+    yield "circle / sphere: π/3", polygon(36), net, (math.pi / 36, radius)
 
 
 def intervals(seed: int) -> Iterator[Instance]:
@@ -168,6 +171,15 @@ def meshes(seed: int) -> Iterator[Instance]:
     yield "torus / sphere", (scale * np.array(torus.vertices), np.array(torus.faces)), icosphere(4)
 
 
+def large_meshes(seed: int) -> Iterator[Instance]:
+    """Meshes of 100,000 vertices, the second one with its vertices shuffled."""
+    V, F = jittered_torus(100_000, seed=20 + seed)
+    order = np.random.default_rng(seed).permutation(len(V))
+    wavy = V * (1 + 0.05 * np.sin(5 * np.arctan2(V[:, 1], V[:, 0])))[:, None]
+    yield "torus / wavy torus", (V, F), (wavy[np.argsort(order)], order[F])
+    yield "torus / ellipsoid", (V, F), (1.4 * icosphere(7)[0] * [1, 1, 0.4], icosphere(7)[1])
+
+
 GROUPS: dict[str, tuple[Callable[[int], Iterator[Instance]], float]] = {
     "plane": (plane, 60.0),
     "space": (space, 60.0),
@@ -179,8 +191,27 @@ GROUPS: dict[str, tuple[Callable[[int], Iterator[Instance]], float]] = {
     "continuous": (continuous, 60.0),
     "intervals": (intervals, 60.0),
     "meshes": (meshes, 60.0),
+    "large-meshes": (large_meshes, 60.0),
 }
 """The instances of a seed, and the seconds allowed for each."""
+
+
+def measured_on(mesh: Any, points: np.ndarray) -> tuple[np.ndarray, float, float]:
+    """Distances along edges between vertices of a mesh, how far others are from them, and a bound of the diameter."""
+    rows = rinow.geodesic_distances(mesh, points, method="edges")
+    between, radius = rows[:, points], float(rows.min(axis=0).max())
+    return np.minimum(between, between.T), radius, min(2 * rows.max(axis=1).min(), between.max() + 2 * radius)
+
+
+def measured_again(pairs: np.ndarray, X: Any, Y: Any, covering_radii: tuple[float, float]) -> float:
+    """Upper bound by a correspondence: half its distortion, and how far other points are from those in it."""
+    if isinstance(X, rinow.MetricSpace):
+        return rinow.distortion(pairs, X, Y) / 2 + sum(covering_radii)
+    (xs, i), (ys, j) = (np.unique(side, return_inverse=True) for side in pairs.T)
+    (DX, *x), (DY, *y) = measured_on(X, xs), measured_on(Y, ys)
+    radii, diameter = x[0] + y[0], max(x[1], y[1])
+    half = max(float(np.abs(DX[a, i] - DY[b, j]).max()) for a, b in zip(i, j, strict=True)) / 2
+    return min(half + radii, diameter / 2) if radii > 0 else half
 
 
 def show(
@@ -197,25 +228,27 @@ def show(
     start = time.perf_counter()
     if name.startswith("d_L"):
         result: Any = rinow.lipschitz_distance(X, Y, time_limit=seconds, verify=verify)
+        spent = time.perf_counter() - start
         f = result.bijection
         measured = math.log(max(rinow.dilatation(f, X, Y), rinow.dilatation(np.argsort(f), Y, X)))
     else:
         result = rinow.gromov_hausdorff(X, Y, time_limit=seconds, covering_radii=covering_radii, verify=verify)
-        spaces = isinstance(X, rinow.MetricSpace)
-        measured = result.upper
-        if spaces:
-            measured = rinow.distortion(result.correspondence, X, Y) / 2 + sum(covering_radii)
-    spent = time.perf_counter() - start
+        spent = time.perf_counter() - start
+        measured = measured_again(result.correspondence, X, Y, covering_radii)
     if measured != result.upper:
         raise SystemExit(f"{name}: the certificate gives {measured}, not {result.upper}")
-    state = "exact" if result.exact else f"ratio {result.upper / max(result.lower, 1e-300):.4f}"
+    row: dict[str, Any] = {"name": name, "seed": seed, "lower": result.lower, "upper": result.upper}
+    row |= {"exact": result.exact, "by": result.lower_bound_by, "seconds": round(spent, 2), "limit": seconds}
+    if not isinstance(X, rinow.MetricSpace):  # the peak of the process so far
+        row["GiB"] = round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20, 2)
+    state = "exact" if result.exact else f"ratio {result.upper / result.lower if result.lower else math.inf:.4f}"
+    notes = (f"{row['GiB']} GiB" if "GiB" in row else "") + "  proof checked" * bool(result.proof_checked)
     print(
         f"{name:24s} {seed:2d} {result.lower:11.6f} {result.upper:11.6f} {state:14s} "
-        f"{result.lower_bound_by:18s} {spent:6.1f} s{'  proof checked' if result.proof_checked else ''}",
+        f"{result.lower_bound_by:18s} {spent:6.1f} s {notes}",
         flush=True,
     )
-    bounds = {"lower": result.lower, "upper": result.upper, "exact": result.exact, "by": result.lower_bound_by}
-    return {"name": name, "seed": seed, **bounds, "seconds": round(spent, 2), "limit": seconds}
+    return row
 
 
 def main() -> None:
@@ -237,9 +270,10 @@ def main() -> None:
         instances, limit = GROUPS[group]
         seconds = limit if options.seconds is None else options.seconds
         wanted = ((seed, *row) for seed in options.seeds for row in instances(seed) if options.only in row[0])
-        rows = [show(name, seed, seconds, *spaces, verify=options.verify) for seed, name, *spaces in wanted]
-        if options.page:
-            write_page(Path(__file__).parents[1], group, rows)
+        for seed, name, *spaces in wanted:
+            row = show(name, seed, seconds, *spaces, verify=options.verify)
+            if options.page:
+                write_page(Path(__file__).parents[1], group, [row])
 
 
 if __name__ == "__main__":

@@ -16,11 +16,11 @@ Written by `python benchmarks/bench_gromov_hausdorff.py --page` and `python benc
 not edit.  Machine: {machine}.
 
 Random instances, one for each seed.  "Exact" counts those whose interval is closed within the limit; the gap is the
-largest upper / lower of all seeds.  Seconds are the median and the longest.  What is not closed is listed with
-its interval below.
+largest upper / lower of all seeds.  Seconds are the median and the longest, memory the peak of the process, for meshes.
+What is not closed is listed with its interval below.
 
-| group | instance | limit | exact | gap | seconds |
-|---|---|--:|--:|--:|--:|
+| group | instance | limit | exact | gap | seconds | GiB |
+|---|---|--:|--:|--:|--:|--:|
 """
 OPEN = """
 ## Intervals left open
@@ -82,7 +82,8 @@ def _summary(rows: list[Row]) -> str:
     seconds = sorted(row["seconds"] for row in rows)
     gap = max(_gap(row) for row in rows)
     times = f"{seconds[len(seconds) // 2]:.1f}, {seconds[-1]:.1f}"
-    return f"{sum(row['exact'] for row in rows)} of {len(rows)} | {gap:.3f} | {times}"
+    memory = max((f"{row['GiB']:.1f}" for row in rows if "GiB" in row), default="")
+    return f"{sum(row['exact'] for row in rows)} of {len(rows)} | {gap:.3f} | {times} | {memory}"
 
 
 def _gap(row: Row) -> float:

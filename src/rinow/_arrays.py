@@ -41,6 +41,14 @@ def as_floats(values: ArrayLike, name: str) -> Floats:
     return np.ascontiguousarray(array, np.float64) if array.ndim else np.asarray(array, np.float64)
 
 
+def as_number(value: Any, name: str) -> float:
+    """One real number; nan and inf are left to the caller."""
+    number = as_floats(value, name)
+    if number.ndim:
+        raise InvalidInputError(f"{name} has shape {number.shape}; give one number.")
+    return float(number)
+
+
 def as_points(points: ArrayLike, name: str = "points", dimension: int | None = None) -> Floats:
     """Points as rows of an (n, dimension) array; non-finite coordinates are left to the caller."""
     array = as_floats(points, name)
@@ -93,10 +101,10 @@ def as_distance_matrix(
     The triangle inequality is left to `MetricSpace`, which has the compiled test and finds the worst triple.
     """
     D = as_floats(distances, name)
+    if D.size == 0:
+        raise InvalidInputError(f"{name} is empty; a metric space has at least one point.")
     if D.ndim != 2 or D.shape[0] != D.shape[1]:
         raise InvalidInputError(f"{name} has shape {D.shape}; give a square matrix.")
-    if len(D) == 0:
-        raise InvalidInputError(f"{name} is empty; a metric space has at least one point.")
     _refuse(~np.isfinite(D), D, name, "is not finite; replace or remove the point")
     _refuse(D < 0, D, name, "is negative; distances are not")
     scale = float(D.max())

@@ -209,7 +209,7 @@ def as_metric_space(space: Any) -> MetricSpace:
     """
     if isinstance(space, MetricSpace):
         return space
-    if hasattr(space, "faces") or issparse(space):
+    if hasattr(space, "faces") or hasattr(space, "adj") or issparse(space):
         raise InvalidInputError(
             f"space is a {type(space).__name__}; give a MetricSpace or a square matrix of distances "
             "(geodesic_space makes one of a mesh, MetricSpace.from_graph of a graph)."

@@ -196,3 +196,22 @@ def test_bad_input_is_one_sentence_and_nothing_is_written(folder, capfd, argumen
 )
 def test_wrong_usage_exits_with_2(folder, arguments):
     assert main(arguments) == 2
+
+
+def test_a_matrix_that_is_no_metric_is_named(folder, capfd):
+    (folder / "bent.csv").write_text("0,1,2.1\n1,0,1\n2.1,1,0\n")
+    code, out, err = run(capfd, "compare", "d.npz", "bent.csv", "--distances")
+    assert (code, out) == (1, "")
+    assert err.startswith("rinow: bent.csv: distances[0, 2] = 2.1")
+    assert err.endswith("raise rtol.\n")
+    code, out, _ = run(capfd, "compare", "d.npz", "bent.csv", "--distances", "--rtol", "0.1", "--json")
+    assert code == 0
+    assert json.loads(out)["lower"] >= 0.45  # the diameters are 3 and 2.1
+
+
+def test_meshes_of_unequal_size_need_no_distances(folder, capfd, monkeypatch):
+    monkeypatch.setattr("rinow.study.comparison.geodesic_space", None)
+    rinow.write_mesh(folder / "c.off", (np.eye(3), [[0, 1, 2]]))
+    code, out, _ = run(capfd, "compare", "a.ply", "c.off", "--metric", "lipschitz", "--json")
+    assert code == 0
+    assert json.loads(out)["lower_bound_by"] == "size"

@@ -18,7 +18,7 @@ from rinow import (
     lipschitz_distance,
     uniform_distance,
 )
-from rinow.errors import InvalidInputError
+from rinow.errors import InvalidInputError, NotAMetricError
 
 LINE = [[0, 1, 2], [1, 0, 1], [2, 1, 0]]
 
@@ -158,6 +158,10 @@ def test_bad_scales():
         find_epsilon_isometry(LINE, LINE, -1.0)
     with pytest.raises(InvalidInputError, match="delta = 0"):
         find_approximation(LINE, LINE, 0.1, 0.0)
+    with pytest.raises(InvalidInputError, match="epsilon has type <U1; give real numbers"):
+        find_epsilon_isometry(LINE, LINE, "1")
+    with pytest.raises(InvalidInputError, match="delta has type object; give real numbers"):
+        find_approximation(LINE, LINE, 0.1, None)
 
 
 @pytest.mark.parametrize("metric", ["gromov_hausdorff", "lipschitz", "uniform"])
@@ -213,3 +217,8 @@ def test_bad_collections():
         distance_matrix([])
     with pytest.raises(InvalidInputError, match="metric = 'other' is unknown"):
         distance_matrix([LINE], metric="other")
+    with pytest.raises(NotAMetricError, match=r"spaces\[1\]: distances\[0, 1\] = 1 differs") as caught:
+        distance_matrix([LINE, [[0, 1], [2, 0]]])
+    assert caught.value.witness == (0, 1)
+    with pytest.raises(InvalidInputError, match=r"spaces\[0\]: distances is empty"):
+        distance_matrix([[], LINE], metric="lipschitz")

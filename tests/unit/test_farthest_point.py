@@ -117,6 +117,8 @@ BAD = [
     (lambda: rinow.farthest_point_net(LINE), "size and radius are both missing; give"),
     (lambda: rinow.farthest_point_net(LINE, size=0), "size = 0 is outside 1..9, the number of points"),
     (lambda: rinow.farthest_point_net(LINE, size=10), "size = 10 is outside 1..9, the number of points"),
+    (lambda: rinow.farthest_point_net(LINE, size=2.5), "size = 2.5 is not a number of points; give a whole number."),
+    (lambda: rinow.farthest_point_net(LINE, size="3"), "size has type <U1; give real numbers."),
     (lambda: rinow.farthest_point_net(LINE, radius=-1.0), "radius = -1.0 is not a radius; give"),
     (lambda: rinow.farthest_point_net(LINE, radius=math.nan), "radius = nan is not a radius; give"),
     (lambda: rinow.farthest_point_net(LINE, size=2, start=9), "start = 9 is outside 0..8"),

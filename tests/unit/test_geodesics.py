@@ -306,4 +306,6 @@ def test_heat_is_near_the_exact_distance():
     pytest.importorskip("potpourri3d")
     V, F, *_ = shapes.irregular_sphere(1000)
     heat = rinow.geodesic_distances((V, F), [0], method="heat")
+    tiny = rinow.geodesic_distances((np.array(V) * 2.0**-500, F), [0], method="heat")
+    np.testing.assert_allclose(tiny * 2.0**500, heat, rtol=1e-9)  # rounding of a division by the size
     assert np.abs(heat - rinow.geodesic_distances((V, F), [0])).max() < 0.1

@@ -221,6 +221,7 @@ def test_one_point_and_repeated_points():
         ([[0, math.nan], [math.nan, 0]], "is not finite", NotAMetricError),
         ([[0, 1, 5], [1, 0, 1], [5, 1, 0]], r"distances\[0, 2\] = 5 exceeds", NotAMetricError),
         (np.empty((0, 0)), "is empty", InvalidInputError),
+        ([], "is empty", InvalidInputError),
         ([[0, 1]], "give a square matrix", InvalidInputError),
     ],
 )
@@ -244,6 +245,21 @@ def test_bad_limits():
         gromov_hausdorff([[0.0]], [[0.0]], time_limit=math.nan)
     with pytest.raises(InvalidInputError, match="rtol = 1"):
         gromov_hausdorff([[0.0]], [[0.0]], rtol=1.0)
+    with pytest.raises(InvalidInputError, match="time_limit has type <U1; give real numbers"):
+        gromov_hausdorff([[0.0]], [[0.0]], time_limit="5")
+    with pytest.raises(InvalidInputError, match=r"time_limit has shape \(2,\); give one number"):
+        gromov_hausdorff([[0.0]], [[0.0]], time_limit=[1, 2])
+    with pytest.raises(InvalidInputError, match="covering_radii has type"):
+        gromov_hausdorff([[0.0]], [[0.0]], covering_radii=("a", 1))
+
+
+@pytest.mark.parametrize("unit", [1e-300, 1e300])
+def test_tiny_and_huge_distances(unit):
+    rng = np.random.default_rng(9)
+    X, Y = (squareform(pdist(rng.random((n, 2)))) for n in (7, 6))
+    result = unlimited(X * unit, Y * unit)
+    assert result.exact
+    assert result.upper == pytest.approx(unlimited(X, Y).upper * unit, rel=1e-12)  # rounding of the products
 
 
 def test_levels_are_the_differences_of_distances():

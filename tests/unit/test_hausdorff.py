@@ -138,6 +138,18 @@ def test_swapping_the_surfaces_swaps_the_result():
     np.testing.assert_allclose(a.distances_a, b.distances_b, atol=1e-13)
 
 
+def test_a_surface_near_the_centre_of_a_sphere():
+    """All faces of the sphere are nearly as near; some of them have no area."""
+    outer, inner = irregular_sphere(300, seed=6), irregular_sphere(40, seed=7)
+    faces = np.concatenate([outer.faces, [[0, 1, 1], [2, 3, 2]], outer.faces[:3, [0, 0, 1]]])
+    positions = 0.02 * inner.vertices + 0.01
+    result = rinow.hausdorff_distance((positions, inner.faces), (outer.vertices, faces))
+    triangles = outer.vertices[outer.faces].tolist()
+    expected = [naive.distance_to_surface(p, triangles) for p in positions.tolist()]
+    np.testing.assert_allclose(result.distances_a, expected, rtol=1e-13)  # rounding of products
+    assert result.upper - result.lower <= 1e-4 * 2 * 3**0.5
+
+
 def test_points_against_a_surface():
     points = np.array([[0.5, 0.5, 2.0], [0.25, 0.5, -1.0]])
     result = rinow.hausdorff_distance(points, (SQUARE, HALVES), tolerance=1e-5)
@@ -221,6 +233,8 @@ REFUSALS = [
     (([[0.0]], [[np.inf]]), {}, "B[0, 0] = inf is not finite; remove the point."),
     (([[0.0]], [[0.0, 1]]), {}, "A has points of dimension 1, B of dimension 2; give the same."),
     (([[0.0]], [[0.0]]), {"tolerance": 0.0}, "tolerance = 0.0 is not positive; give"),
+    (([[0.0]], [[0.0]]), {"tolerance": "1"}, "tolerance has type <U1; give real numbers"),
+    ((np.empty((2, 0)), np.empty((2, 0))), {}, "A is empty; the Hausdorff distance"),
     (([0, 2], [1]), {"space": [[0, 1], [1, 0]]}, "A[1] = 2 is outside 0..1; indices count from 0."),
     (([0], []), {"space": [[0, 1], [1, 0]]}, "B has shape (0,); give one list of at least one index."),
     (([[0.0, 0]], (SQUARE, HALVES)), {}, "A has shape (1, 2); give one point per row, shape (n, 3)."),

@@ -14,11 +14,26 @@ from rinow.comparison.gromov_hausdorff import first_interval
 from rinow.comparison.large_work import Work
 from rinow.comparison.surfaces import eccentricity_gap, sample_of
 from rinow.comparison.symmetry import isometries
-from rinow.errors import NotAMetricError
+from rinow.errors import InvalidMeshError, NotAMetricError
 from rinow.kernels import dives
 
 pytestmark = pytest.mark.usefixtures("compiled_searches")
 SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="dives in plain Python take minutes")
+
+FOREVER = Clock(math.inf)
+
+
+class Looks(Clock):
+    """A clock that is over after so many looks."""
+
+    def __init__(self, looks):
+        super().__init__(math.inf)
+        self.looks = looks
+
+    @property
+    def over(self):
+        self.looks -= 1
+        return self.looks < 0
 
 
 def grid(n, height=0.0):
@@ -133,6 +148,11 @@ def test_mesh_in_two_parts():
     assert caught.value.witness == (0, 9)
 
 
+def test_mesh_without_a_face_that_takes_part():
+    with pytest.raises(InvalidMeshError, match="mesh has no face with three different finite vertices"):
+        gromov_hausdorff((grid(2)[0], [[0, 0, 1]]), grid(2))
+
+
 @SLOW
 def test_interval_of_nets_contains_the_distance_of_the_meshes(monkeypatch):
     A, B = grid(6), grid(6, 0.8)
@@ -144,9 +164,9 @@ def test_interval_of_nets_contains_the_distance_of_the_meshes(monkeypatch):
     assert min(result.covering_radii) > 0
     assert result.lower <= exact.lower
     assert exact.upper <= result.upper
-    D = [sample_of(mesh, Clock(1)) for mesh in (A, B)]
+    D = [sample_of(mesh, FOREVER, FOREVER) for mesh in (A, B)]
     monkeypatch.setattr(surfaces, "ALL_VERTICES", 1000)
-    full = [MetricSpace(sample_of(mesh, Clock(1)).distances) for mesh in (A, B)]
+    full = [MetricSpace(sample_of(mesh, FOREVER, FOREVER).distances) for mesh in (A, B)]
     spaces = [space.subspace(sample.indices) for space, sample in zip(full, D, strict=True)]
     half = distortion(
         [[list(D[0].indices).index(x), list(D[1].indices).index(y)] for x, y in result.correspondence], *spaces
@@ -154,11 +174,37 @@ def test_interval_of_nets_contains_the_distance_of_the_meshes(monkeypatch):
     assert result.upper == half / 2 + sum(result.covering_radii)
 
 
+@pytest.mark.parametrize("looks", [0, 1, 12])
+def test_small_mesh_becomes_a_net_when_the_time_is_over(monkeypatch, looks):
+    """One point more than looks at the clock that allowed one; the intervals hold, and half the diameter is enough."""
+    mesh, other = grid(5, 0.5), grid(5)
+    full = sample_of(mesh, FOREVER, FOREVER)
+    assert (full.indices == np.arange(25)).all()
+    assert full.covering_radius == 0.0
+    net = sample_of(mesh, Clock(0), Looks(looks))
+    assert len(net.indices) == looks + 2
+    assert (net.distances == full.distances[np.ix_(net.indices, net.indices)]).all()
+    assert net.covering_radius == full.distances[net.indices].min(axis=0).max()
+    assert net.diameter_bound >= full.distances.max()
+    exact = gromov_hausdorff(mesh, other, time_limit=math.inf)
+    monkeypatch.setattr(surfaces, "SMALL_NET", 0)
+    rough = gromov_hausdorff(mesh, other, time_limit=0)
+    assert rough.lower <= exact.lower <= exact.upper <= rough.upper
+    assert not rough.exact
+
+
+def test_coincident_vertices_of_a_mesh_are_all_taken():
+    V = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 1, 0]]
+    full = sample_of((V, [[0, 1, 2], [1, 3, 2]]), FOREVER, FOREVER)
+    assert (full.indices == np.arange(4)).all()
+    assert full.distances[2, 3] == full.covering_radius == 0.0
+
+
 def test_eccentricity_bounds_of_a_net_hold_for_all_vertices(monkeypatch):
-    full = sample_of(grid(7, 0.5), Clock(1))
+    full = sample_of(grid(7, 0.5), FOREVER, FOREVER)
     monkeypatch.setattr(surfaces, "ALL_VERTICES", 10)
     monkeypatch.setattr(surfaces, "LARGEST_NET", 6)
-    net = sample_of(grid(7, 0.5), Clock(1))
+    net = sample_of(grid(7, 0.5), FOREVER, FOREVER)
     low, high = net.eccentricity_bounds
     true = full.distances.max(axis=1)
     assert (low <= true + 1e-12).all()  # rounding of sums of two distances
@@ -190,6 +236,6 @@ def test_eccentricities_of_nets_hold_for_every_denser_net():
     for k in (5, 10, 20):
         parts = [space.subspace(range(k)) for space in whole]
         radii = tuple(float(space.distances[:, :k].min(axis=1).max()) for space in whole)
-        found = eccentricity_gap(*(sample_of(part, Clock.of(0)) for part in parts), radii)
-        assert found <= eccentricity_gap(*(sample_of(space, Clock.of(0)) for space in whole)) + 1e-12
+        found = eccentricity_gap(*(sample_of(part, FOREVER, FOREVER) for part in parts), radii)
+        assert found <= eccentricity_gap(*(sample_of(space, FOREVER, FOREVER) for space in whole)) + 1e-12
         assert found / 2 <= exact.upper

@@ -75,10 +75,31 @@ def test_unequal_sizes_are_infinitely_far():
 
 def test_coincident_points_of_one_space_only():
     result = lipschitz_distance([[0, 0, 1], [0, 0, 1], [1, 1, 0]], LINE)
-    assert result.upper == math.inf
+    assert result.lower == result.upper == math.inf
+    assert result.exact
+    assert not lipschitz_distance([[0, 0, 1], [0, 0, 1], [1, 1, 0]], LINE, time_limit=0).exact
     both = lipschitz_distance([[0, 0, 1], [0, 0, 1], [1, 1, 0]], [[0, 2, 2], [2, 0, 0], [2, 0, 0]])
     assert both.exact
     assert both.upper == math.log(2)
+
+
+@pytest.mark.parametrize("seed", range(90, 110))
+def test_equals_all_permutations_where_points_coincide(seed):
+    """Points of a line with repetitions; of every second one a shuffled multiple, so that the distance is finite."""
+    rng = np.random.default_rng(seed)
+    X, Y = (squareform(pdist(rng.integers(0, 4, (5, 1)).astype(float))) for _ in range(2))
+    if seed % 2:
+        order = rng.permutation(5)
+        Y = 1.5 * X[np.ix_(order, order)]
+    result = lipschitz_distance(X, Y)
+    check_certificate(result, X, Y)
+    assert result.exact
+    assert result.lower == result.upper == naive.lipschitz_distance(X.tolist(), Y.tolist())
+
+
+def test_ratios_beyond_the_range_of_numbers():
+    with pytest.raises(InvalidInputError, match=r"reach from 1e-200 to 2e\+200, a ratio without a number"):
+        lipschitz_distance(np.array(LINE) * 1e-200, np.array(LINE) * 1e200)
 
 
 def test_no_time_gives_bounds_at_once():

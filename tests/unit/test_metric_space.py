@@ -186,3 +186,9 @@ def test_coercion_keeps_spaces_and_refuses_meshes():
 def test_networkx_is_not_imported_unless_used():
     code = "import sys, rinow.metric_space; sys.exit('networkx' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_graph_is_no_distance_matrix():
+    for graph in (csr_array(np.eye(3)), nx.path_graph(3)):
+        with pytest.raises(rinow.errors.InvalidInputError, match=r"MetricSpace\.from_graph of a graph"):
+            rinow.length_defect(graph)

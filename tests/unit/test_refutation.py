@@ -9,7 +9,7 @@ from pysat.solvers import Solver
 from scipy.spatial.distance import pdist, squareform
 
 from naive import unit_propagation as naive
-from rinow import gromov_hausdorff, lipschitz_distance
+from rinow import find_approximation, find_epsilon_isometry, gromov_hausdorff, lipschitz_distance
 from rinow.comparison import satisfiability, steps
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, MAP, RELATION, Engine
@@ -171,3 +171,17 @@ def test_maps_of_subsets_are_verified():
     bound.improve(Clock(600.0))
     assert bound.interval.by == "satisfiability"
     assert bound.interval.proof_checked is True
+
+
+def test_a_no_is_verified(monkeypatch):
+    """Of an approximation and of a map that arc consistency leaves open; a wrong proof leaves the question open."""
+    X, Y = polygon(7), segment(6)
+    questions = [(find_approximation, (X, Y, 0.0, 1.5)), (find_epsilon_isometry, (X, Y, 1.4))]
+    for ask, arguments in questions:
+        plain, verified = (ask(*arguments, time_limit=math.inf, verify=v) for v in (False, True))
+        assert (plain.found, plain.proof_checked) == (False, False)
+        assert (verified.found, verified.proof_checked) == (False, True)
+    monkeypatch.setattr(satisfiability, "is_refuted", lambda *_: False)
+    for ask, arguments in questions:
+        wrong = ask(*arguments, time_limit=math.inf, verify=True)
+        assert (wrong.found, wrong.proof_checked) == (None, None)

@@ -10,10 +10,11 @@ from cyclopts import Parameter
 from rinow._version import __version__
 from rinow.cli._terminal import print_counts, print_json, print_notes, working
 from rinow.comparison.hausdorff import HausdorffDistance
-from rinow.errors import FileFormatError, InvalidInputError
+from rinow.errors import FileFormatError, InvalidInputError, NotAMetricError
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
 from rinow.io.tables import check_table, read_distances, read_points, write_columns
 from rinow.mesh import TriangleMesh
+from rinow.metric_space import MetricSpace
 from rinow.study.comparison import ComparisonStudy, Kind, Metric, compare_shapes
 
 __all__ = ["compare"]
@@ -30,6 +31,7 @@ def compare(
     output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
     tolerance: float = 1e-4,
     time_limit: float = 60.0,
+    rtol: float = 1e-9,
     verify: bool = False,
     unit: str = "length",
     json: bool = False,
@@ -54,7 +56,10 @@ def compare(
     tolerance
         Hausdorff distance of surfaces: greatest width of the interval, relative to the diagonal.
     time_limit
-        Other distances: seconds after which to stop with the interval reached.
+        Other distances: seconds after which to stop with the interval reached.  The Lipschitz distance of meshes needs
+        their geodesic distances before, which may take a minute.
+    rtol
+        Distance matrices: how much the axioms of a metric may be broken, relative to the largest distance.
     verify
         Other distances: check the proof if the lower bound comes from a clause-learning solver.
     unit
@@ -70,7 +75,7 @@ def compare(
     shapes: list[Any] = []
     for path in (a, b):
         with working(f"reading {path.name}"):
-            shapes.append(_read(path, kind))
+            shapes.append(_read(path, kind, rtol))
     with working("comparing"):
         study = compare_shapes(
             *shapes,
@@ -92,10 +97,15 @@ def compare(
         _print(record, notes)
 
 
-def _read(path: Path, kind: Kind) -> Any:
+def _read(path: Path, kind: Kind, rtol: float) -> Any:
     if kind == "surfaces":
         return read_mesh(path)
-    return read_points(path) if kind == "points" else read_distances(path)
+    if kind == "points":
+        return read_points(path)
+    try:
+        return MetricSpace(read_distances(path), rtol=rtol)
+    except NotAMetricError as error:
+        raise NotAMetricError(f"{path}: {error}", error.witness) from None
 
 
 def _check_outputs(output: tuple[Path, ...], inputs: tuple[Path, Path], kind: Kind, metric: Metric) -> None:

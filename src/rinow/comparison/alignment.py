@@ -40,7 +40,8 @@ def align(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
     """Offer maps f: X → Y and g: Y → X whose graphs together have the least distortion of those tried."""
     if max(len(DX), len(DY)) > LARGEST or clock.over:
         return
-    P, Q = coordinates(DX), coordinates(DY)
+    scale = float(max(DX.max(), DY.max())) or 1.0  # squares neither overflow nor vanish
+    P, Q = coordinates(DX / scale), coordinates(DY / scale)
     d = max(P.shape[1], Q.shape[1])
     P, Q = (np.pad(points, ((0, 0), (0, d - points.shape[1]))) for points in (P, Q))
     tree = KDTree(Q)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._arrays import as_number
 from rinow._printing import OneLine
 from rinow.comparison import bounds, steps
 from rinow.comparison.clock import Clock
@@ -34,10 +35,13 @@ class EpsilonIsometry(OneLine):
         True with a map, False when there is none, None when the time was over before either was proved.
     map : (n,) ndarray of int
         Image in Y of each point of X; empty unless `found` is true.
+    proof_checked : bool or None
+        Whether the proof that a clause-learning solver gave for a "no" was checked; None if there is none.
     """
 
     found: bool | None
     map: Indices
+    proof_checked: bool | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -50,13 +54,18 @@ class Approximation(OneLine):
         True with the nets, False when there are none, None when the time was over before either was proved.
     pairs : (k, 2) ndarray of int
         Points of the two nets that correspond; empty unless `found` is true.
+    proof_checked : bool or None
+        Whether the proof that a clause-learning solver gave for a "no" was checked; None if there is none.
     """
 
     found: bool | None
     pairs: Indices
+    proof_checked: bool | None = None
 
 
-def find_epsilon_isometry(X: Any, Y: Any, epsilon: float, *, time_limit: float = 60.0) -> EpsilonIsometry:
+def find_epsilon_isometry(
+    X: Any, Y: Any, epsilon: float, *, time_limit: float = 60.0, verify: bool = False
+) -> EpsilonIsometry:
     r"""Find a map that changes no distance by more than ε and comes within ε of every point.
 
     Parameters
@@ -67,11 +76,14 @@ def find_epsilon_isometry(X: Any, Y: Any, epsilon: float, *, time_limit: float =
         At least 0, in the unit of the distances; with 0 the map is an isometry.
     time_limit : float, default 60
         Seconds after which an undecided search stops.
+    verify : bool, default False
+        Have the clause-learning solver write down its proof of a "no", and check it: that takes two or three times as
+        long as finding it.  A "no" with a wrong proof is undecided.
 
     Returns
     -------
     result : EpsilonIsometry
-        `found` (True, False, or None for undecided) and `map`.
+        `found` (True, False, or None for undecided), `map` and `proof_checked`.
 
     Raises
     ------
@@ -104,16 +116,19 @@ def find_epsilon_isometry(X: Any, Y: Any, epsilon: float, *, time_limit: float =
     _check_scale(epsilon, "epsilon")
     DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
     found, pairs = _by_relation(DX, DY, clock, wanted=epsilon, hopeless=3.0 * epsilon)
+    checked = None
     if found is None:
-        engine = Engine(DX, DY, MAP, both=False)
-        found, pairs = _decide(engine, epsilon, clock, np.eye(len(DX), dtype=bool), DY <= epsilon)
+        engine, near = Engine(DX, DY, MAP, both=False, clock=clock), (np.eye(len(DX), dtype=bool), DY <= epsilon)
+        found, pairs, checked = _decide(engine, epsilon, clock, near, verify=verify)
     f = np.empty(len(DX) if found else 0, np.intp)
     if found:
         f[pairs[:, 0]] = pairs[:, 1]
-    return EpsilonIsometry(found, f)
+    return EpsilonIsometry(found, f, checked)
 
 
-def find_approximation(X: Any, Y: Any, epsilon: float, delta: float, *, time_limit: float = 60.0) -> Approximation:
+def find_approximation(
+    X: Any, Y: Any, epsilon: float, delta: float, *, time_limit: float = 60.0, verify: bool = False
+) -> Approximation:
     r"""Find nets of two spaces that correspond to each other: whether they are (ε, δ)-approximations.
 
     Parameters
@@ -126,11 +141,14 @@ def find_approximation(X: Any, Y: Any, epsilon: float, delta: float, *, time_lim
         Above 0; distances of corresponding points differ by less than this.
     time_limit : float, default 60
         Seconds after which an undecided search stops.
+    verify : bool, default False
+        Have the clause-learning solver write down its proof of a "no", and check it: that takes two or three times as
+        long as finding it.  A "no" with a wrong proof is undecided.
 
     Returns
     -------
     result : Approximation
-        `found` (True, False, or None for undecided) and `pairs` of points of the nets.
+        `found` (True, False, or None for undecided), `pairs` of points of the nets, and `proof_checked`.
 
     Raises
     ------
@@ -162,7 +180,7 @@ def find_approximation(X: Any, Y: Any, epsilon: float, delta: float, *, time_lim
     """
     clock = Clock.of(time_limit)
     _check_scale(epsilon, "epsilon")
-    if not delta > 0.0:
+    if not as_number(delta, "delta") > 0.0:
         raise InvalidInputError(f"delta = {delta} is not a positive length; distances must differ by less than it.")
     DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
     level = float(np.nextafter(delta, 0.0))
@@ -172,13 +190,15 @@ def find_approximation(X: Any, Y: Any, epsilon: float, delta: float, *, time_lim
     if found:
         return Approximation(True, np.stack([net_x[pairs[:, 0]], net_y[pairs[:, 1]]], axis=1))
     found, pairs = _by_relation(DX, DY, clock, wanted=level, hopeless=4.0 * epsilon + delta)
+    checked = None
     if found is None:
-        found, pairs = _decide(Engine(DX, DY, RELATION, both=False), level, clock, DX <= epsilon, DY <= epsilon)
-    return Approximation(found, pairs if found else np.empty((0, 2), np.intp))
+        engine, near = Engine(DX, DY, RELATION, both=False, clock=clock), (DX <= epsilon, DY <= epsilon)
+        found, pairs, checked = _decide(engine, level, clock, near, verify=verify)
+    return Approximation(found, pairs if found else np.empty((0, 2), np.intp), checked)
 
 
 def _check_scale(value: float, name: str) -> None:
-    if not value >= 0.0:
+    if not as_number(value, name) >= 0.0:
         raise InvalidInputError(f"{name} = {value} is not a length; give a number >= 0.")
 
 
@@ -206,19 +226,24 @@ def _net(D: Floats, epsilon: float) -> Indices:
     return np.array(chosen, np.intp)
 
 
-def _decide(engine: Engine, level: float, clock: Clock, near_x: Flags, near_y: Flags) -> tuple[bool | None, Indices]:
-    """Whether pairs within the level exist that come near every point of both spaces, and such pairs."""
+def _decide(
+    engine: Engine, level: float, clock: Clock, near: tuple[Flags, Flags], *, verify: bool
+) -> tuple[bool | None, Indices, bool | None]:
+    """Whether pairs within the level exist that come near all points of both spaces, such pairs, `proof_checked`."""
     none = np.empty((0, 2), np.intp)
     possible = np.ones(engine.shape, np.bool_)
     if engine.kind == MAP:  # every point has an image, so arc consistency over the points of X is right
         left = engine.consistent(level, clock)
         if left is None:
-            return False, none
+            return False, none, None
         possible = left
     if not solver_installed() or clock.over:
-        return None, none
-    with Satisfiability(engine, possible, level, clock, near=(near_x, near_y)) as solver:
+        return None, none, None
+    with Satisfiability(engine, possible, level, clock, near=near, verify=verify) as solver:
         refuted, pairs = solver.run(clock)
+        right = solver.proof_is_right(clock) if refuted else None
     if pairs is not None and worst_of(engine.kind, engine.DX, engine.DY, pairs) <= level:
-        return True, pairs
-    return (False if refuted else None), none
+        return True, pairs, None
+    if not refuted or right is False:
+        return None, none, None
+    return False, none, right is True

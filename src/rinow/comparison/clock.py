@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 
+from rinow._arrays import as_number
 from rinow.errors import InvalidInputError
 
 __all__ = ["Clock"]
@@ -23,11 +24,12 @@ class Clock:
         Raises
         ------
         InvalidInputError
-            If the limit is negative or nan.
+            If the limit is no number, negative or nan.
         """
-        if not time_limit >= 0:
+        seconds = as_number(time_limit, "time_limit")
+        if not seconds >= 0.0:
             raise InvalidInputError(f"time_limit = {time_limit} is not a time; give seconds >= 0, or math.inf.")
-        return cls(time_limit)
+        return cls(seconds)
 
     @property
     def elapsed(self) -> float:

@@ -15,7 +15,7 @@ from rinow.comparison.correspondence import uniform_distance
 from rinow.comparison.gromov_hausdorff import gromov_hausdorff
 from rinow.comparison.hausdorff import as_point_set, hausdorff_distance
 from rinow.comparison.lipschitz import lipschitz_distance
-from rinow.errors import InvalidInputError
+from rinow.errors import InvalidInputError, NotAMetricError
 from rinow.mesh import as_mesh, as_triangle_mesh, is_mesh_like
 from rinow.metric_space import as_metric_space
 
@@ -115,11 +115,16 @@ def distance_matrix(
 
 
 def _space(value: Any, name: str) -> Any:
-    return as_metric_space(value)
+    try:
+        return as_metric_space(value)
+    except NotAMetricError as error:
+        raise NotAMetricError(f"{name}: {error}", error.witness) from None
+    except InvalidInputError as error:
+        raise InvalidInputError(f"{name}: {error}") from None
 
 
 def _space_or_mesh(value: Any, name: str) -> Any:
-    return as_mesh(value) if is_mesh_like(value) else as_metric_space(value)
+    return as_mesh(value) if is_mesh_like(value) else _space(value, name)
 
 
 def _set(value: Any, name: str) -> Any:

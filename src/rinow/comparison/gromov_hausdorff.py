@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._arrays import as_floats, as_number
 from rinow._printing import OneLine
 from rinow.comparison import bounds, large, steps
 from rinow.comparison.alignment import align
@@ -15,7 +16,7 @@ from rinow.comparison.clock import Clock
 from rinow.comparison.engine import RELATION, Engine, worst_of
 from rinow.comparison.interval import Interval
 from rinow.comparison.subsets import bound_by_subsets
-from rinow.comparison.surfaces import Sample, eccentricity_gap, sample_of
+from rinow.comparison.surfaces import Sample, eccentricity_gap, samples_of
 from rinow.errors import InvalidInputError
 from rinow.metric_space import MetricSpace
 
@@ -39,8 +40,8 @@ class GromovHausdorff(OneLine):
     exact : bool
         Whether the two are equal.
     correspondence : (k, 2) ndarray of int
-        Pairs (x, y) that cover both spaces; half their distortion is `upper`.  For a mesh of more than 3000 vertices
-        they cover a net, and `upper` is half their distortion plus the covering radii.
+        Pairs (x, y) that cover both spaces; half their distortion is `upper`.  Where nets are compared they cover the
+        nets, and `upper` is half their distortion plus the covering radii, or half the larger diameter if that is less.
     lower_bound_by : str
         What proved `lower`: "non-negativity", "diameter", "eccentricities", "packing", "single linkage", "sorted
         distances", "arc consistency", "search", "satisfiability", "persistence" or "maps of subsets".
@@ -78,10 +79,11 @@ def gromov_hausdorff(
     X, Y : MetricSpace, (n, n) array_like of float, or mesh
         Two finite metric spaces, or their distance matrices, in one unit of length; repeated points are allowed.  A
         mesh (`TriangleMesh`, `IntrinsicMesh`, ``(V, F)`` pair or object with vertices and faces) stands for its
-        vertices with the lengths of the shortest paths along edges; vertices without a face are left out.
+        vertices with the lengths of the shortest paths along edges; vertices without a face are left out.  Of a mesh of
+        more than 3000 vertices, or where the time is short, a net of the vertices is compared.
     time_limit : float, default 60
         Seconds after which the search stops with the bounds reached so far; with 0 the bounds that cost no search.
-        One step may overrun it by some tenths of a second; all distances of meshes of 3000 vertices take up to 3.
+        One step may overrun it by some tenths of a second.
     rtol : float, default 0
         Stop as soon as ``upper - lower <= rtol * upper``; with 0 only when the two are equal.
     covering_radii : (float, float), default (0, 0)
@@ -96,7 +98,7 @@ def gromov_hausdorff(
     -------
     result : GromovHausdorff
         `lower` and `upper` in the unit of the distances, `exact` if they are equal, `correspondence` whose distortion
-        is ``2 * upper``, `lower_bound_by`, the name of what proved `lower`, and `proof_checked`.
+        is ``2 * upper``, `lower_bound_by`, the name of what proved `lower`, `covering_radii` and `proof_checked`.
 
     Raises
     ------
@@ -152,17 +154,19 @@ def gromov_hausdorff(
     ('maps of subsets', True)
     """
     clock = Clock.of(time_limit)
-    if not 0.0 <= rtol < 1.0:
+    if not 0.0 <= as_number(rtol, "rtol") < 1.0:
         raise InvalidInputError(f"rtol = {rtol} is not a relative tolerance; give a number from 0 to below 1.")
     beyond = _checked_radii(covering_radii)
-    samples = sample_of(X, clock.part(0.25 * clock.left)), sample_of(Y, clock.part(0.25 * clock.left))
+    samples = samples_of(X, Y, clock)
     radii = samples[0].covering_radius + beyond[0], samples[1].covering_radius + beyond[1]
     share = 1.0 if sum(radii) == 0.0 else SHARE_OF_NETS if sum(beyond) > 0.0 else SHARE_OF_MESHES
     interval = first_interval(samples[0].distances, samples[1].distances, rtol, verify=verify)
     _compare(samples[0].distances, samples[1].distances, interval, clock.part(share * clock.left))
-    upper, exact = 0.5 * interval.upper + sum(radii), interval.exact and sum(radii) == 0.0
+    upper, exact = 0.5 * interval.upper, interval.exact
     proved = Proved(0.5 * interval.lower, interval.by, interval.proof_checked)
     if sum(radii) > 0.0:
+        diameters = [sample.diameter_bound + 2.0 * r for sample, r in zip(samples, beyond, strict=True)]
+        upper, exact = min(upper + sum(radii), 0.5 * max(diameters)), False
         proved = _proved_beyond(samples, proved, beyond, clock, verify=verify)
     pairs = np.stack([samples[0].indices[interval.pairs[:, 0]], samples[1].indices[interval.pairs[:, 1]]], axis=1)
     return GromovHausdorff(proved.lower, upper, exact, pairs, proved.by, radii, proved.proof_checked)
@@ -170,7 +174,7 @@ def gromov_hausdorff(
 
 def _checked_radii(covering_radii: tuple[float, float]) -> tuple[float, float]:
     """Two finite radii that are not negative."""
-    radii = np.asarray(covering_radii, dtype=np.float64)
+    radii = as_floats(covering_radii, "covering_radii")
     if radii.shape != (2,) or not (np.isfinite(radii) & (radii >= 0.0)).all():
         raise InvalidInputError(f"covering_radii = {covering_radii} are not two lengths >= 0; give one for each space.")
     return float(radii[0]), float(radii[1])

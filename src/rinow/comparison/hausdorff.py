@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from rinow._arrays import as_indices, as_points
+from rinow._arrays import as_indices, as_number, as_points
 from rinow._printing import OneLine
 from rinow.comparison.hausdorff_surfaces import surface_distance
 from rinow.comparison.surface_tree import frame_of, surface_of_mesh, surface_of_points
@@ -120,7 +120,7 @@ def hausdorff_distance(A: Any, B: Any, *, space: Any = None, tolerance: float = 
     >>> result.lower <= 0.25 <= result.upper, result.distances_a
     (True, array([0.25, 0.25, 0.25, 0.25]))
     """
-    if not (np.isfinite(tolerance) and tolerance > 0.0):
+    if not 0.0 < as_number(tolerance, "tolerance") < np.inf:
         raise InvalidInputError(f"tolerance = {tolerance} is not positive; give a share of the diagonal such as 1e-4.")
     if space is not None:
         return _between_subsets(as_metric_space(space).distances, A, B)
@@ -139,7 +139,7 @@ def _as_surface(value: Any, name: str) -> TriangleMesh | Floats:
 def as_point_set(points: Any, name: str, dimension: int | None = None) -> Floats:
     """At least one finite point."""
     P = as_points(points, name, dimension)
-    if not len(P):
+    if not P.size:
         raise InvalidInputError(f"{name} is empty; the Hausdorff distance needs at least one point in each set.")
     wrong = np.argwhere(~np.isfinite(P))
     if len(wrong):
@@ -176,16 +176,7 @@ def _between_subsets(D: Floats, A: Any, B: Any) -> HausdorffDistance:
         chosen.append(indices)
     a, b = chosen
     result = _of_finite_sets(*_row_minima(D, a, b), *_row_minima(D, b, a))
-    return HausdorffDistance(
-        result.lower,
-        result.upper,
-        int(a[result.witness_a]),
-        int(b[result.witness_b]),
-        result.distances_a,
-        result.distances_b,
-        result.directed_a,
-        result.directed_b,
-    )
+    return replace(result, witness_a=int(a[result.witness_a]), witness_b=int(b[result.witness_b]))
 
 
 def _row_minima(D: Floats, rows: Indices, columns: Indices) -> tuple[Floats, Indices]:

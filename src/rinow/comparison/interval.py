@@ -29,12 +29,16 @@ class Interval:
     @property
     def closed(self) -> bool:
         """Whether the interval is as short as was asked for."""
-        return self.upper - self.lower <= max(self.rtol, tolerances.EXACT) * self.upper
+        return self._within(max(self.rtol, tolerances.EXACT))
 
     @property
     def exact(self) -> bool:
         """Whether the bounds are equal, up to the rounding of isometries that a proof used."""
-        return self.upper - self.lower <= tolerances.EXACT * self.upper
+        return self._within(tolerances.EXACT)
+
+    def _within(self, share: float) -> bool:
+        """Whether the width is at most a share of the upper bound, which may be infinite."""
+        return self.lower == self.upper or self.upper - self.lower <= share * self.upper < math.inf
 
     @property
     def wanted(self) -> float:

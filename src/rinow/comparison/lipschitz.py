@@ -20,7 +20,7 @@ from rinow.errors import InvalidInputError
 from rinow.kernels import distortion
 from rinow.metric_space import MetricSpace, as_metric_space
 
-__all__ = ["LipschitzDistance", "MetricSpace", "as_map", "dilatation", "lipschitz_distance"]
+__all__ = ["LipschitzDistance", "MetricSpace", "as_map", "dilatation", "infinitely_far", "lipschitz_distance"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -74,13 +74,14 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
     -------
     result : LipschitzDistance
         `lower` and `upper`, `exact` if they are equal, `bijection` that has `upper`, `lower_bound_by`, `proof_checked`.
-        Both bounds are inf for spaces of unequal size, and `upper` is inf as long as only one of the spaces has
-        coincident points (distance 0) where the bijection meets them.
+        Both bounds are inf for spaces of unequal size, and if coincident points (distance 0) of the one do not fit
+        those of the other; `upper` is inf as long as no bijection is known that fits them.
 
     Raises
     ------
     InvalidInputError
-        If an argument is not a space, is empty, or the limit is negative or nan.
+        If an argument is not a space, is empty, the limit is negative or nan, or two distances differ by a factor
+        above 1e308.
     NotAMetricError
         If a matrix is not a metric.
 
@@ -113,7 +114,8 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
     clock = Clock.of(time_limit)
     DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
     if len(DX) != len(DY):
-        return LipschitzDistance(math.inf, math.inf, True, np.empty(0, np.intp), "size")
+        return infinitely_far()
+    _check_ratios(DX, DY)
     interval = _first_interval(DX, DY, verify=verify)
     if not interval.closed and not clock.over:
         engine = Engine(DX, DY, BIJECTION, clock=clock)
@@ -124,6 +126,21 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
     f[interval.pairs[:, 0]] = interval.pairs[:, 1]
     lower, upper = math.log(interval.lower), math.log(interval.upper)
     return LipschitzDistance(lower, upper, interval.exact, f, interval.by, interval.proof_checked)
+
+
+def infinitely_far() -> LipschitzDistance:
+    """The distance of spaces of unequal size."""
+    return LipschitzDistance(math.inf, math.inf, True, np.empty(0, np.intp), "size")
+
+
+def _check_ratios(DX: Floats, DY: Floats) -> None:
+    """Ratios of distances that are not 0 must be finite."""
+    least = min(float(D.min(initial=np.inf, where=D > 0.0)) for D in (DX, DY))
+    greatest = float(max(DX.max(), DY.max()))
+    if greatest / float(np.finfo(np.float64).max) > least:
+        raise InvalidInputError(
+            f"distances of X and Y reach from {least:.3g} to {greatest:.3g}, a ratio without a number; scale a space."
+        )
 
 
 def _first_interval(DX: Floats, DY: Floats, *, verify: bool) -> Interval:

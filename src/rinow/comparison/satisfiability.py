@@ -123,18 +123,22 @@ class Satisfiability:
         return False, None
 
     def refutes(self, interval: Interval, clock: Clock) -> bool:
-        """Raise a lower bound by the refutation, unless its proof is found to be wrong; whether that was done.
+        """Raise a lower bound by the refutation, unless its proof is found to be wrong; whether that was done."""
+        right = self.proof_is_right(clock)
+        if right is not False:
+            interval.refuted(self._level, self.engine, "satisfiability", self.error, right is True)
+        return right is not False
+
+    def proof_is_right(self, clock: Clock) -> bool | None:
+        """Whether a check confirms the refutation; None if none was asked for or the time is over before.
 
         For the check incompatible pairs are found again from the distances; the clauses for points and symmetry are
         what the solver was given.
         """
-        right = None
-        if self._verify:
-            exclusions = [self._incompatible(s) for s in range(len(self.pairs)) if not clock.over]
-            right = None if clock.over else is_refuted(exclusions, self._given, self._solver.get_proof(), clock)
-        if right is not False:
-            interval.refuted(self._level, self.engine, "satisfiability", self.error, right is True)
-        return right is not False
+        if not self._verify:
+            return None
+        exclusions = [self._incompatible(s) for s in range(len(self.pairs)) if not clock.over]
+        return None if clock.over else is_refuted(exclusions, self._given, self._solver.get_proof(), clock)
 
     def _incompatible(self, s: int) -> Indices:
         """The variables of the pairs that cannot stand beside a pair."""

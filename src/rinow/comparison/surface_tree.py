@@ -111,7 +111,7 @@ def _sorted(points: Floats, triangles: Indices) -> Surface:
     order = np.empty(len(corners), np.intp)
     box_trees.sort_into_tree(corners, depth, order)
     corners = np.ascontiguousarray(corners[order])
-    boxes = np.empty((2 << depth, 6))
+    boxes = np.empty((2 << depth, box_trees.BOX))
     box_trees.bound_boxes(corners, depth, boxes)
     corner_points = np.ascontiguousarray(triangles[order])
     used, first = np.unique(corner_points, return_index=True)

@@ -12,21 +12,26 @@ from scipy.sparse.csgraph import dijkstra
 
 from rinow import tolerances
 from rinow.comparison.clock import Clock
-from rinow.errors import NotAMetricError
+from rinow.errors import InvalidMeshError, NotAMetricError
 from rinow.geodesics.edge_graph import edge_graph
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh, is_mesh_like
 from rinow.metric_space import as_metric_space
 
-__all__ = ["Sample", "eccentricity_gap", "sample_of"]
+__all__ = ["Sample", "eccentricity_gap", "sample_of", "samples_of"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 ALL_VERTICES = 3000
-"""Vertices up to which all distances of a mesh are computed: 72 MB."""
+"""Vertices up to which all distances of a mesh are computed, if the time suffices: 72 MB."""
 
 LARGEST_NET, NET_BYTES = 600, 1 << 28
 """Points of a net, and memory for their distances to all vertices."""
+
+
+SHARE, SMALL_NET, SHARES_OF_SMALL = 0.25, 100, (0.4, 0.65)
+"""Share of the time left that a net takes, and for the first and second one while it has fewer points than that: these
+are compared in no time."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,27 +64,34 @@ class Sample:
         low = np.maximum(self.rows.max(axis=0), (own - self.rows).max(axis=0))
         return low, (own + self.rows).min(axis=0)
 
+    @property
+    def diameter_bound(self) -> float:
+        """Upper bound of the diameter of the space."""
+        by_ball = 2.0 * float(self.rows.max(axis=1).min())
+        return min(by_ball, float(self.distances.max()) + 2.0 * self.covering_radius)
 
-def sample_of(thing: Any, clock: Clock) -> Sample:
-    """All points of a space or small mesh, or a net of a large mesh that grows while there is time.
+
+def samples_of(X: Any, Y: Any, clock: Clock) -> tuple[Sample, Sample]:
+    """The samples of two spaces or meshes, in a share of the time."""
+    first, second = SHARES_OF_SMALL
+    sample = sample_of(X, clock.part(SHARE * clock.left), clock.part(first * clock.left))
+    return sample, sample_of(Y, clock.part(SHARE * clock.left), clock.part(second * clock.left))
+
+
+def sample_of(thing: Any, clock: Clock, clock_of_small: Clock) -> Sample:
+    """All points of a space, or a net of a mesh that grows while there is time: to all vertices of a small one.
 
     Raises
     ------
     InvalidInputError
-        If it is neither a space nor a mesh.
+        If it is neither a space nor a mesh, or the mesh has no face that takes part.
     NotAMetricError
         If a matrix is not a metric, or the faces of a mesh are not connected.
     """
     if not is_mesh_like(thing):
         D = as_metric_space(thing).distances
         return Sample(np.arange(len(D)), D, D, 0.0)
-    graph, vertices = _connected_edges(as_mesh(thing))
-    if len(vertices) <= ALL_VERTICES:
-        D = dijkstra(graph)
-        _check_connected(D[0], vertices)
-        D = np.minimum(D, D.T)
-        return Sample(vertices, D, D, 0.0)
-    return _net(graph, vertices, clock)
+    return _net(*_connected_edges(as_mesh(thing)), clock, clock_of_small)
 
 
 def eccentricity_gap(X: Sample, Y: Sample, beyond: tuple[float, float] = (0.0, 0.0)) -> float:
@@ -105,6 +117,8 @@ def _one_sided(X: Sample, Y: Sample, r: float, s: float) -> float:
 def _connected_edges(mesh: TriangleMesh | IntrinsicMesh) -> tuple[csr_array, Indices]:
     """The edges of a mesh between the vertices that have a face, and these vertices."""
     vertices = np.flatnonzero(mesh.topology.vertex_is_used)
+    if not len(vertices):
+        raise InvalidMeshError("mesh has no face with three different finite vertices; a space has at least one point.")
     return csr_array(edge_graph(mesh)[vertices][:, vertices]), vertices
 
 
@@ -117,20 +131,25 @@ def _check_connected(row: Floats, vertices: Indices) -> None:
         )
 
 
-def _net(graph: csr_array, vertices: Indices, clock: Clock) -> Sample:
-    """Farthest points in turn, with their distances to all vertices."""
-    size = max(2, min(LARGEST_NET, NET_BYTES // (8 * len(vertices))))
-    rows, chosen = np.empty((size, len(vertices))), [0]
-    nearest = np.full(len(vertices), np.inf)
+def _net(graph: csr_array, vertices: Indices, clock: Clock, clock_of_small: Clock) -> Sample:
+    """Farthest points in turn, with their distances to all vertices: of a small mesh all, in their order."""
+    n = len(vertices)
+    size = n if n <= ALL_VERTICES else max(2, min(LARGEST_NET, NET_BYTES // (8 * n)))
+    rows, chosen = np.empty((size, n)), [0]
+    nearest = np.full(n, np.inf)
     for k in range(size):
         rows[k] = dijkstra(graph, indices=chosen[k])
         if k == 0:
             _check_connected(rows[0], vertices)
         np.minimum(nearest, rows[k], out=nearest)
-        if k + 1 == size or (clock.over and k > 0):
+        nearest[chosen[k]] = -1.0  # vertices may coincide
+        if k + 1 == size or (k > 0 and (clock if k >= SMALL_NET else clock_of_small).over):
             break
         chosen.append(int(nearest.argmax()))
-    rows = rows[: len(chosen)]
-    distances = rows[:, chosen]
+    distances = rows[: len(chosen), chosen]
     distances = np.minimum(distances, distances.T)
-    return Sample(vertices[chosen], rows, distances, float(nearest.max()))
+    if len(chosen) == n:
+        places = np.argsort(chosen)
+        distances = distances[np.ix_(places, places)]
+        return Sample(vertices, distances, distances, 0.0)
+    return Sample(vertices[chosen], rows[: len(chosen)], distances, float(nearest.max()))

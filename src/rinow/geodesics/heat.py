@@ -35,11 +35,13 @@ def heat_distances(mesh: Any, sources: Indices) -> Floats:
     t = surface.topology
     used = np.flatnonzero(t.vertex_is_used)
     place = np.cumsum(t.vertex_is_used) - 1
-    solver = MeshHeatMethodDistanceSolver(surface.vertices[used], place[surface.faces[t.face_used]])
+    vertices = surface.vertices[used]
+    unit = float(np.ptp(vertices, axis=0).max(initial=0.0)) or 1.0  # the library squares lengths
+    solver = MeshHeatMethodDistanceSolver(vertices / unit, place[surface.faces[t.face_used]])
     rows = np.full((len(sources), surface.n_vertices), np.inf)
     rows[np.arange(len(sources)), sources] = 0.0
     for row, source in zip(rows, sources, strict=True):
         if t.vertex_is_used[source]:
             near = t.components[used] == t.components[source]
-            row[used[near]] = solver.compute_distance(place[source])[near]
+            row[used[near]] = unit * solver.compute_distance(place[source])[near]
     return rows

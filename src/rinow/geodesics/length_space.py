@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 
-from rinow._arrays import as_indices
+from rinow._arrays import as_indices, as_number
 from rinow.errors import InvalidInputError
 from rinow.kernels.midpoints import worst_midpoint_defects
 from rinow.metric_space import MetricSpace, as_metric_space
@@ -162,7 +162,7 @@ def intrinsic_metric(
 
 def as_step(step: float, name: str) -> float:
     """A positive length."""
-    if not step > 0.0:
+    if not as_number(step, name) > 0.0:
         raise InvalidInputError(f"{name} = {step} is not a length; give a positive number.")
     return float(step)
 

@@ -87,4 +87,4 @@ def _check_exists(path: Path) -> None:
     if not path.is_file():
         raise FileFormatError("this is not a regular file; save the mesh to disk first.")
     if path.stat().st_size == 0:
-        raise FileFormatError("the file is empty; export the mesh again.")
+        raise FileFormatError("the file is empty; export it again.")

@@ -10,6 +10,10 @@ from rinow.kernels._jit import kernel, parallel_kernel, prange
 LEAF, BLOCK, ROOM = 4, 256, 64
 """Triangles in a leaf at most, points that one thread takes together, and the height of the stack of open boxes."""
 
+BOX, FLAT = 11, 256
+"""Numbers of a box, and the triangles in the largest one that has a slab.  Without slabs a point near the centre of a
+sphere would look into most of its boxes."""
+
 NEEDLE = 1e-6
 """Squared sine of an angle below which the sides of a triangle are asked as well as its plane."""
 
@@ -22,7 +26,7 @@ class BoxTree(NamedTuple):
 
     corners: np.ndarray  # (n, 9), in the order of the tree
     order: np.ndarray  # (n,), number of each triangle before it was sorted
-    boxes: np.ndarray  # (2 leaves, 6): least and greatest coordinates
+    boxes: np.ndarray  # (2 leaves, BOX): least and greatest coordinates; a unit vector, least and greatest height in it
     depth: int
 
 
@@ -84,29 +88,62 @@ def _select(keys, order, low, high, middle):
 
 @kernel
 def bound_boxes(corners, depth, boxes):
-    """Write the boxes, leaves first."""
+    """Write the boxes, leaves first; those of few triangles with a slab, too, as thin as the surface is flat there."""
     n, leaves = corners.shape[0], 1 << depth
+    level, boxes[:, 6:] = depth, 0.0
     for i in range(2 * leaves - 1, 0, -1):
+        if i < 1 << level:
+            level -= 1
+        first, last = (i - (1 << level)) * n >> level, (i + 1 - (1 << level)) * n >> level
         for axis in range(3):
             boxes[i, axis], boxes[i, 3 + axis] = np.inf, -np.inf
         if i < leaves:
             for axis in range(3):
                 boxes[i, axis] = min(boxes[2 * i, axis], boxes[2 * i + 1, axis])
                 boxes[i, 3 + axis] = max(boxes[2 * i, 3 + axis], boxes[2 * i + 1, 3 + axis])
-            continue
-        for t in range((i - leaves) * n >> depth, (i + 1 - leaves) * n >> depth):
-            for k in range(9):
-                boxes[i, k % 3] = min(boxes[i, k % 3], corners[t, k])
-                boxes[i, 3 + k % 3] = max(boxes[i, 3 + k % 3], corners[t, k])
+        else:
+            for t in range(first, last):
+                for k in range(9):
+                    boxes[i, k % 3] = min(boxes[i, k % 3], corners[t, k])
+                    boxes[i, 3 + k % 3] = max(boxes[i, 3 + k % 3], corners[t, k])
+        if last - first <= FLAT:
+            _bound_slab(corners, first, last, boxes[i])
+
+
+@kernel
+def _bound_slab(corners, first, last, box):
+    """Write the direction of the mean normal of some triangles, and their heights in it."""
+    u, v, w = 0.0, 0.0, 0.0
+    for t in range(first, last):
+        x, y, z = doubled_area(corners, t)
+        u, v, w = u + x, v + y, w + z
+    size = math.sqrt(_square(u, v, w))
+    if size == 0.0:
+        return
+    box[6], box[7], box[8], box[9], box[10] = u / size, v / size, w / size, np.inf, -np.inf
+    for t in range(first, last):
+        for k in range(0, 9, 3):
+            height = box[6] * corners[t, k] + box[7] * corners[t, k + 1] + box[8] * corners[t, k + 2]
+            box[9], box[10] = min(box[9], height), max(box[10], height)
+
+
+@kernel
+def doubled_area(corners, t):
+    """Vector at right angles to a triangle, twice as long as its area."""
+    bx, by, bz = corners[t, 3] - corners[t, 0], corners[t, 4] - corners[t, 1], corners[t, 5] - corners[t, 2]
+    cx, cy, cz = corners[t, 6] - corners[t, 0], corners[t, 7] - corners[t, 1], corners[t, 8] - corners[t, 2]
+    return by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx
 
 
 @kernel
 def box_gap(boxes, i, x, y, z):
-    """Squared distance of a point from a box."""
+    """Squared distance of a point from a box, or from its slab if that is farther."""
     u = max(max(boxes[i, 0] - x, x - boxes[i, 3]), 0.0)
     v = max(max(boxes[i, 1] - y, y - boxes[i, 4]), 0.0)
     w = max(max(boxes[i, 2] - z, z - boxes[i, 5]), 0.0)
-    return u * u + v * v + w * w
+    height = boxes[i, 6] * x + boxes[i, 7] * y + boxes[i, 8] * z
+    above = max(max(boxes[i, 9] - height, height - boxes[i, 10]), 0.0)
+    return max(u * u + v * v + w * w, above * above)
 
 
 @kernel

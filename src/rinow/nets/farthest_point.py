@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
-from rinow._arrays import as_indices
+from rinow._arrays import as_indices, as_number
 from rinow._printing import OneLine
 from rinow.errors import InvalidInputError
 from rinow.mesh import as_mesh, is_mesh_like
@@ -131,10 +131,12 @@ def _as_size(size: int | None, radius: float | None, n_points: int) -> int:
     """Greatest number of points, checked."""
     if size is None and radius is None:
         raise InvalidInputError("size and radius are both missing; give the number of points or the covering radius.")
-    if radius is not None and not radius >= 0.0:
+    if radius is not None and not as_number(radius, "radius") >= 0.0:
         raise InvalidInputError(f"radius = {radius} is not a radius; give a number that is not negative.")
-    if size is not None and not 1 <= size <= n_points:
+    if size is not None and not 1 <= as_number(size, "size") <= n_points:
         raise InvalidInputError(f"size = {size} is outside 1..{n_points}, the number of points of the space.")
+    if size is not None and size != int(size):
+        raise InvalidInputError(f"size = {size} is not a number of points; give a whole number.")
     return n_points if size is None else int(size)
 
 
@@ -194,7 +196,7 @@ def is_epsilon_net(space_or_mesh: Any, indices: ArrayLike, epsilon: float) -> bo
     >>> is_epsilon_net(line, [1, 4, 7], 1.0), is_epsilon_net(line, [1, 7], 1.0)
     (True, False)
     """
-    if not epsilon >= 0.0:
+    if not as_number(epsilon, "epsilon") >= 0.0:
         raise InvalidInputError(f"epsilon = {epsilon} is not a radius; give a number that is not negative.")
     if is_mesh_like(space_or_mesh):
         mesh = as_mesh(space_or_mesh)

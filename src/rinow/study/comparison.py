@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from rinow.comparison.gromov_hausdorff import GromovHausdorff, gromov_hausdorff
 from rinow.comparison.hausdorff import HausdorffDistance, hausdorff_distance
-from rinow.comparison.lipschitz import LipschitzDistance, lipschitz_distance
+from rinow.comparison.lipschitz import LipschitzDistance, infinitely_far, lipschitz_distance
 from rinow.errors import InvalidInputError
 from rinow.geodesics.distances import geodesic_space
 from rinow.mesh import TriangleMesh
-from rinow.metric_space import MetricSpace
+from rinow.metric_space import MetricSpace, as_metric_space
 
 __all__ = ["ComparisonStudy", "Kind", "Metric", "compare_shapes"]
 
@@ -104,7 +104,7 @@ def compare_shapes(
     Parameters
     ----------
     a, b
-        The shapes, both of one kind: `TriangleMesh`, (n, dimension) points or (n, n) distances.
+        The shapes, both of one kind: `TriangleMesh`, (n, dimension) points, `MetricSpace` or (n, n) distances.
     metric : {"hausdorff", "gromov-hausdorff", "lipschitz"}
         The distance.
     kind : {"surfaces", "points", "distances"}
@@ -112,7 +112,8 @@ def compare_shapes(
     tolerance : float, default 1e-4
         Greatest width of the interval of the Hausdorff distance of surfaces, relative to their diagonal.
     time_limit : float, default 60
-        Seconds after which the other two distances stop with the interval reached.
+        Seconds after which the other two distances stop with the interval reached.  The geodesic distances of meshes,
+        which the Lipschitz distance needs, come before.
     verify : bool, default False
         Have proofs of a clause-learning solver checked, for these two distances.
     unit : str, optional
@@ -139,6 +140,8 @@ def compare_shapes(
     elif metric == "gromov-hausdorff":
         X, Y = (shape if kind == "surfaces" else _space(shape, kind) for shape in (a, b))
         result = gromov_hausdorff(X, Y, time_limit=time_limit, verify=verify)
+    elif kind == "surfaces" and a.n_vertices != b.n_vertices:  # no need for distances
+        result, unit = infinitely_far(), "1"
     else:
         X, Y = _space(a, kind), _space(b, kind)
         result, unit = lipschitz_distance(X, Y, time_limit=time_limit, verify=verify), "1"
@@ -150,7 +153,7 @@ def _space(shape: Any, kind: Kind) -> MetricSpace:
     if kind == "points":
         return MetricSpace.from_points(shape)
     if kind == "distances":
-        return MetricSpace(shape)
+        return as_metric_space(shape)
     if isinstance(shape, TriangleMesh) and shape.n_vertices > MOST_POINTS:
         raise InvalidInputError(
             f"a mesh has {shape.n_vertices:,} vertices, more than the {MOST_POINTS:,} of which the Lipschitz distance "
