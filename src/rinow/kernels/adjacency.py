@@ -114,7 +114,8 @@ def ends_in_order(after, before):
     keys = np.empty(2 * n, np.int64)
     for i in range(n):
         keys[i], keys[n + i] = after[i] * 2 * n + i, before[i] * 2 * n + n + i
-    return np.sort(keys)
+    keys.sort()
+    return keys
 
 
 @inner

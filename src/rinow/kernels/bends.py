@@ -40,4 +40,5 @@ def bend_variances(points, size, core, reach, order, work):
             for j in range(n):
                 row[c * n + j] *= factor[k, k]
                 bends[j] += row[c * n + j] ** 2
-    bends[:n] /= reach**4
+    for j in range(n):
+        bends[j] /= reach**4

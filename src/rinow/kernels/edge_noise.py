@@ -35,7 +35,7 @@ def middle_spread(values, n):
     Noise turns edges to and fro, a convex or a folded neighbourhood turns them one way.  The values get sorted.
     """
     if n > FEW:
-        values[:n] = np.sort(values[:n])
+        values[:n].sort()
     else:
         for i in range(1, n):
             x, j = values[i], i

@@ -136,6 +136,14 @@ def add_points(shell, order, work):
 
 
 @inner
+def add_square(terms, n, sums):
+    """Add the first n rows and columns; as a sum of slices this compiles code for messages about their shapes."""
+    for b in range(n):
+        for a in range(n):
+            sums[b, a] += terms[b, a]
+
+
+@inner
 def add_moments(points, n, reaches, order, work):
     """Write the moments and offsets of each ball, the number of its points and the sum of w^2."""
     n_shells, top = len(reaches), 2 * order + 1
@@ -168,8 +176,8 @@ def add_moments(points, n, reaches, order, work):
         if shell > 0:
             counts[shell] += counts[shell - 1]
             squares[shell] += squares[shell - 1]
-            moments[shell, :top, :top] += moments[shell - 1, :top, :top]
-            offsets[shell, : order + 1, : order + 1] += offsets[shell - 1, : order + 1, : order + 1]
+            add_square(moments[shell - 1], top, moments[shell])
+            add_square(offsets[shell - 1], order + 1, offsets[shell])
 
 
 @inner
