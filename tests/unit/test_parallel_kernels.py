@@ -7,7 +7,7 @@ import numba
 import numpy as np
 import pytest
 
-from rinow.kernels import stencils
+from rinow.kernels import _jit, stencils
 from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
 from rinow.kernels._parallel import Parallel, of_a_part
 
@@ -124,3 +124,12 @@ def test_parts_of_a_loop_cover_it(n_parts):
     for k in range(n_parts):
         part(k, n_parts, 5, out)
     np.testing.assert_array_equal(out, np.arange(10) + 5)
+
+
+def test_without_a_folder_for_compiled_kernels_they_are_compiled_each_time(monkeypatch):
+    def refuse(**options):
+        raise RuntimeError("cannot cache function: no locator available")
+
+    monkeypatch.setattr(_jit.numba, "njit", refuse)
+    with pytest.warns(UserWarning, match="set NUMBA_CACHE_DIR to a folder that you may write to"):
+        assert not _jit.can_keep(_jit.can_keep)

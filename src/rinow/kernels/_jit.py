@@ -4,6 +4,8 @@ A scalar kernel that only kernels call is `inner`: the code that makes Python ob
 which for named tuples of many arrays takes longer to compile than the kernel itself.  A driver is a `parallel_kernel`.
 """
 
+import warnings
+
 import numba
 from numba import prange
 
@@ -11,7 +13,22 @@ from rinow.kernels._parallel import Parallel
 
 __all__ = ["inlined", "inner", "kernel", "parallel_kernel", "prange"]
 
-POLICY = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+
+def can_keep(function):
+    """Whether numba may write compiled kernels, beside their source or at home; warn if not."""
+    try:
+        numba.njit(cache=True)(function)
+    except RuntimeError:
+        warnings.warn(
+            "no folder to keep compiled kernels in: each run compiles them again; "
+            "set NUMBA_CACHE_DIR to a folder that you may write to.",
+            stacklevel=2,
+        )
+        return False
+    return True
+
+
+POLICY = {"cache": can_keep(can_keep), "error_model": "numpy", "no_cfunc_wrapper": True}
 
 kernel = numba.njit(**POLICY)
 
