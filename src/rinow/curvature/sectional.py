@@ -130,13 +130,13 @@ def sectional(
     out, direction1, direction2, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
     out[:, 0] *= shrinkage(samples, out)
     errors = standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
-    columns = *out[:, :4].T, errors
-    gaussian, mean, risk, reach, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
+    columns = *out[:, :5].T, errors
+    gaussian, mean, risk, reach, height, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
     noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     principal = mean + half, mean - half, direction1, direction2
-    estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk)
+    estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height)
     estimate.put(on_edge, ends)
     repair_ends(mesh, estimate, radius is None)
     flatten(estimate, flat_vertices(mesh))
