@@ -17,7 +17,7 @@ from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, rings_around, stencil_surface
-from rinow.curvature.strays import stray_vertices
+from rinow.curvature.strays import spikes, stray_vertices
 from rinow.kernels import balls, patch_driver, patches, quadrics, risks
 from rinow.mesh import TriangleMesh
 
@@ -120,6 +120,10 @@ def sectional(
     """
     is_stray, on_edge, ends = stray_vertices(mesh)
     sheet, index = patch_sheet(mesh, is_stray)
+    alone, beside = (index[v] for v in spikes(sheet))
+    if len(alone):
+        is_stray[alone] = True
+        sheet, index = patch_sheet(mesh, is_stray)
     n = mesh.n_vertices
     tasks = Tasks(executor or SerialExecutor())
     if progress is not None:
@@ -138,6 +142,7 @@ def sectional(
     principal = mean + half, mean - half, direction1, direction2
     estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height)
     estimate.put(on_edge, ends)
+    estimate.put(alone, beside)
     repair_ends(mesh, estimate, radius is None)
     flatten(estimate, flat_vertices(mesh))
     if progress is not None:

@@ -231,7 +231,7 @@ def add_values(vertices, values, totals):
 
 @parallel_kernel
 def mean_values(totals, normals, out, direction1, direction2):
-    """Write K, H, risk, radius, height over the fits, variance of K between them, and principal directions of the means.
+    """Write K, H, risk, radius, height over the fits, variance of K between them, and directions of the means.
 
     All are nan without a patch; k1 >= k2.  Curvatures change their sign here: positive where the surface bends away
     from its normal.
