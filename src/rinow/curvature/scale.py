@@ -33,6 +33,8 @@ DENSE = 6.0
 
 LADDER = np.array([1.6, 2.0, 2.5, 3.1, 3.8, 4.7, 5.8, 7.2, 9.0, 11.2, 14.0, 17.0])
 """Radii of balls, in spacings."""
+RUNG = np.log(LADDER[-1] / LADDER[0]) / (len(LADDER) - 1)
+"""Logarithm of the step from one to the next."""
 
 
 class Ladder(NamedTuple):
@@ -80,7 +82,8 @@ class Samples(NamedTuple):
     """What the sample tells.
 
     For each vertex the samples near it (compressed rows); for each sample the vertices it speaks for (compressed rows),
-    its logarithmic risks of H over the plane and of K over the torus for each radius and order, its choice and noise.
+    its logarithmic risks of H over the plane and of K over the torus for each radius and order, its choice, noise and
+    spacing.
     """
 
     starts: Ints
@@ -91,6 +94,7 @@ class Samples(NamedTuple):
     torus_logs: Floats
     choice: Choice
     noise: Floats
+    spacing: Floats
 
 
 def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -> Samples:
@@ -113,7 +117,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -
     member_starts, members = members_of_discs(sheet, everything, centres, np.full(m, NEAR * radius), room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
-    return Samples(starts, near, member_starts, members, plane_logs, torus_logs, choice, noise)
+    return Samples(starts, near, member_starts, members, plane_logs, torus_logs, choice, noise, sheet.spacing[centres])
 
 
 def _examine(
@@ -150,22 +154,28 @@ def _examine(
     return logs - power * np.log(spacing)[:, None, None], choice, noise * spacing**2
 
 
-def windows(samples: Samples) -> tuple[Ints, Ints, Ints, Floats]:
-    """For each vertex the least and largest index of radius and the highest order chosen near it, and the noise."""
+def windows(samples: Samples, sheet: balls.Sheet) -> tuple[Ints, Ints, Ints, Floats]:
+    """For each vertex the least and largest index of radius and the highest order chosen near it, and the noise.
+
+    Radii are the same in units of length, not in spacings, which a graded mesh has others of where the samples are.
+    """
     n = len(samples.starts) - 1
     low, high, top, noise = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n)
     choice = samples.choice
-    covers.windows(samples.starts, samples.near, choice.radius, choice.order, samples.noise, low, high, top, noise)
+    known, scales = (choice.radius, choice.order, samples.noise), (sheet.spacing, samples.spacing, RUNG)
+    n_radii = samples.torus_logs.shape[1]
+    covers.windows(samples.starts, samples.near, *known, *scales, n_radii, low, high, top, noise)
     unknown = high < 0
-    low[unknown], high[unknown], top[unknown] = 0, samples.torus_logs.shape[1] - 1, 4
+    low[unknown], high[unknown], top[unknown] = 0, n_radii - 1, 4
     return low, high, top, noise
 
 
-def chosen_at(vertices: Ints, samples: Samples, logs: Floats) -> Choice:
+def chosen_at(vertices: Ints, samples: Samples, sheet: balls.Sheet, logs: Floats) -> Choice:
     """The least mean logarithmic risk among the samples near each vertex."""
     choice = _empty_choice(len(vertices))
     table = logs.reshape(len(logs), logs.shape[1] * logs.shape[2])
-    covers.choices(vertices, samples.starts, samples.near, table, N_ORDERS, N_BLOCKS, *choice)
+    scales = sheet.spacing, samples.spacing, RUNG
+    covers.choices(vertices, samples.starts, samples.near, table, *scales, N_ORDERS, N_BLOCKS, *choice)
     return choice
 
 

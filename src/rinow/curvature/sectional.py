@@ -162,11 +162,11 @@ def blended_patches(
     sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, at_edge: NDArray[np.bool_], tasks: Tasks
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """What `patches.mean_values` tells at the vertices of the sheet, and the variance of the noise."""
-    low, high, top, noise = windows(samples)
+    low, high, top, noise = windows(samples, sheet)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, core)
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
-    plane, choice = (chosen_at(centres, samples, logs) for logs in (samples.plane_logs, samples.torus_logs))
+    plane, choice = (chosen_at(centres, samples, sheet, logs) for logs in (samples.plane_logs, samples.torus_logs))
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
     window = _widened(low[centres], high[centres] + np.where(beside, EDGE_RADII, 0), top[centres], len(ladder.reaches))
     if quality.selects or beside.any():
