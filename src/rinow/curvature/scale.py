@@ -157,7 +157,8 @@ def _examine(
 def windows(samples: Samples, sheet: balls.Sheet) -> tuple[Ints, Ints, Ints, Floats]:
     """For each vertex the least and largest index of radius and the highest order chosen near it, and the noise.
 
-    Radii are the same in units of length, not in spacings, which a graded mesh has others of where the samples are.
+    Where the spacing is another one than at a sample, the best radius is between that with as many vertices (without
+    noise) and the same length (with noise): both count.
     """
     n = len(samples.starts) - 1
     low, high, top, noise = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n)

@@ -108,7 +108,7 @@ def windows(starts, samples, radius, order, noise, spacing, at_samples, rung, n_
             if radius[s] < 0:
                 continue
             same = min(max(radius[s] + steps_between(at_samples[s], spacing[v], rung), 0), n_radii - 1)
-            low[v], high[v] = min(low[v], same), max(high[v], same)
+            low[v], high[v] = min(low[v], same, radius[s]), max(high[v], same, radius[s])
             top[v] = max(top[v], order[s])
             total += math.log(max(noise[s], 1e-300))
             count += 1
