@@ -13,10 +13,11 @@ from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 
-__all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "sample", "select", "windows"]
+__all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "sample", "scales", "select", "windows"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Scales = tuple[Floats, Floats, Floats]
 
 PILOT_RADII, PILOT_ORDER = 10, 6
 """Balls and orders of the fits over the tangent plane."""
@@ -154,7 +155,7 @@ def _examine(
     return logs - power * np.log(spacing)[:, None, None], choice, noise * spacing**2
 
 
-def windows(samples: Samples, sheet: balls.Sheet) -> tuple[Ints, Ints, Ints, Floats]:
+def windows(samples: Samples, scales: Scales) -> tuple[Ints, Ints, Ints, Floats]:
     """For each vertex the least and largest index of radius and the highest order chosen near it, and the noise.
 
     Where the spacing is another one than at a sample, the best radius is between that with as many vertices (without
@@ -163,7 +164,7 @@ def windows(samples: Samples, sheet: balls.Sheet) -> tuple[Ints, Ints, Ints, Flo
     n = len(samples.starts) - 1
     low, high, top, noise = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n)
     choice = samples.choice
-    known, scales = (choice.radius, choice.order, samples.noise), (sheet.spacing, samples.spacing, RUNG)
+    known = choice.radius, choice.order, samples.noise
     n_radii = samples.torus_logs.shape[1]
     covers.windows(samples.starts, samples.near, *known, *scales, n_radii, low, high, top, noise)
     unknown = high < 0
@@ -171,11 +172,20 @@ def windows(samples: Samples, sheet: balls.Sheet) -> tuple[Ints, Ints, Ints, Flo
     return low, high, top, noise
 
 
-def chosen_at(vertices: Ints, samples: Samples, sheet: balls.Sheet, logs: Floats) -> Choice:
+def scales(samples: Samples, sheet: balls.Sheet, at_edge: NDArray[np.bool_]) -> Scales:
+    """Spacings of vertices and samples, and the step of the ladder.
+
+    It is infinite, so that radii in spacings are taken over as they are, if there is one radius only, and near a
+    boundary: there the spacing is known less, and a ball that is small has too few points.
+    """
+    is_one = samples.torus_logs.shape[1] == 1
+    return sheet.spacing, samples.spacing, np.where(at_edge | is_one, np.inf, RUNG)
+
+
+def chosen_at(vertices: Ints, samples: Samples, scales: Scales, logs: Floats) -> Choice:
     """The least mean logarithmic risk among the samples near each vertex."""
     choice = _empty_choice(len(vertices))
     table = logs.reshape(len(logs), logs.shape[1] * logs.shape[2])
-    scales = sheet.spacing, samples.spacing, RUNG
     covers.choices(vertices, samples.starts, samples.near, table, *scales, N_ORDERS, N_BLOCKS, *choice)
     return choice
 

@@ -14,7 +14,7 @@ from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, 
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
-from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
+from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, scales, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, rings_around, stencil_surface
 from rinow.curvature.strays import spikes, stray_vertices
@@ -162,11 +162,12 @@ def blended_patches(
     sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, at_edge: NDArray[np.bool_], tasks: Tasks
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """What `patches.mean_values` tells at the vertices of the sheet, and the variance of the noise."""
-    low, high, top, noise = windows(samples, sheet)
+    between = scales(samples, sheet, at_edge)
+    low, high, top, noise = windows(samples, between)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, core)
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
-    plane, choice = (chosen_at(centres, samples, sheet, logs) for logs in (samples.plane_logs, samples.torus_logs))
+    plane, choice = (chosen_at(centres, samples, between, logs) for logs in (samples.plane_logs, samples.torus_logs))
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
     window = _widened(low[centres], high[centres] + np.where(beside, EDGE_RADII, 0), top[centres], len(ladder.reaches))
     if quality.selects or beside.any():

@@ -94,7 +94,7 @@ def link(places, sources, radii, starts, n_blocks, sheet, counts, links):
 @inner
 def steps_between(sample, vertex, rung):
     """Steps of the ladder by which a radius in spacings of a sample is farther up in spacings of a vertex."""
-    return int(round(math.log(sample / vertex) / rung))
+    return int(math.floor(math.log(sample / vertex) / rung + 0.5))
 
 
 @parallel_kernel
@@ -107,7 +107,7 @@ def windows(starts, samples, radius, order, noise, spacing, at_samples, rung, n_
             s = samples[i]
             if radius[s] < 0:
                 continue
-            same = min(max(radius[s] + steps_between(at_samples[s], spacing[v], rung), 0), n_radii - 1)
+            same = min(max(radius[s] + steps_between(at_samples[s], spacing[v], rung[v]), 0), n_radii - 1)
             low[v], high[v] = min(low[v], same, radius[s]), max(high[v], same, radius[s])
             top[v] = max(top[v], order[s])
             total += math.log(max(noise[s], 1e-300))
@@ -143,7 +143,7 @@ def choices(vertices, starts, samples, logs, spacing, at_samples, rung, n_orders
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
             near = samples[starts[vertices[i]] : starts[vertices[i] + 1]]
             for k in range(len(near)):
-                shifts[k] = n_orders * steps_between(at_samples[near[k]], spacing[vertices[i]], rung)
+                shifts[k] = n_orders * steps_between(at_samples[near[k]], spacing[vertices[i]], rung[vertices[i]])
             sum_logs(near, logs, shifts, totals, counts)
             best = np.inf
             radius[i], order[i], risk[i] = -1, 0, np.inf
