@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 
 OF_HEIGHTS = (0.05, 0.2)
 """Correlations of the heights of neighbours over the fits up to which these are noise, and from which detail."""
-SMALL = 0.08
+SMALL = 0.1
 """Heights, in spacings, that show no detail: their square is added to the variance."""
 OF_FITS, OF_CUBICS, OF_QUARTICS = (-0.05, 0.05), (-0.1, 0.1), (0.1, 0.3)
 """Correlations of neighbours up to which a difference is noise, and from which detail: of quadrics or quartics from

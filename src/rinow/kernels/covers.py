@@ -94,7 +94,7 @@ def link(places, sources, radii, starts, n_blocks, sheet, counts, links):
 @inner
 def steps_between(sample, vertex, rung):
     """Steps of the ladder by which a radius in spacings of a sample is farther up in spacings of a vertex."""
-    return int(math.floor(math.log(sample / vertex) / rung + 0.5))
+    return math.floor(math.log(sample / vertex) / rung + 0.5)
 
 
 @parallel_kernel
