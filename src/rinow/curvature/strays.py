@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
@@ -75,8 +77,8 @@ def spikes(sheet: balls.Sheet) -> tuple[Indices, Indices]:
     likely = np.flatnonzero((np.abs(height) > 0.5 * SPACINGS * sheet.spacing) & (height**2 > ALONE * around))
     if not len(likely) or len(height) <= NEAREST:
         return none, none
-    tree = KDTree(sheet.vertices)
-    distances, near = tree.query(sheet.vertices[likely], NEAREST + 1)
+    found_near: tuple[Any, Any] = KDTree(sheet.vertices).query(sheet.vertices[likely], NEAREST + 1)
+    distances, near = found_near
     offsets, middles = np.empty((2, len(likely)))
     points, normals = (np.concatenate([x[likely], x]) for x in (sheet.vertices, sheet.normals))
     reach = np.ascontiguousarray(distances[:, -1])
