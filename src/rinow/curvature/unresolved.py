@@ -58,7 +58,10 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     if estimate.mean is None or estimate.height is None or estimate.spacing is None:
         return estimate
     spacing = estimate.spacing
-    share = _common_share(mesh, np.clip(estimate.height / spacing, -1.0, 1.0), OF_HEIGHTS, SMALL)
+    height = np.clip(estimate.height / spacing, -1.0, 1.0)
+    if not np.fmax.reduce(np.abs(height), initial=0.0) > SMALL * OF_HEIGHTS[0] ** 0.5:  # no correlation exceeds that
+        return estimate
+    share = _common_share(mesh, height, OF_HEIGHTS, SMALL)
     share[~np.isfinite(estimate.gaussian) | mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
     if not share.any():
         return estimate
