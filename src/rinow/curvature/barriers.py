@@ -6,6 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.creases import CreaseLines, EdgeTurnings, crease_lines_of
+from rinow.curvature.sheet import patch_sheet
+from rinow.curvature.stencils import rings_around
+from rinow.curvature.strays import spikes
 from rinow.kernels import crease_lines
 from rinow.mesh import TriangleMesh
 
@@ -35,8 +38,8 @@ def crease_barriers(mesh: TriangleMesh) -> Bools:
     -------
     is_crease : (n_edges,) ndarray of bool
         Those lines of `singular_features` of ten edges or more whose median jump is eight standard errors, or of eight
-        edges with sixteen, without the facets of coarse rounds.  Noise of a tenth of the edge length makes no such
-        line on a smooth surface.
+        edges with sixteen, without the facets of coarse rounds and the edges around spikes.  Noise of a tenth of the
+        edge length makes no such line on a smooth surface.
     """
     turnings = EdgeTurnings(mesh)
     theta = np.abs(turnings.turnings)
@@ -51,7 +54,7 @@ def crease_barriers(mesh: TriangleMesh) -> Bools:
 
 def _certain_lines(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:
     edges, kept = mesh.topology.edges, lines.is_crease
-    told = kept & ~_bounds_strips(mesh, turnings, lines)
+    told = kept & ~_bounds_strips(mesh, turnings, lines) & ~np.all(_around_spikes(mesh)[edges], axis=1)
     labels = crease_lines.line_components(kept, edges, mesh.n_vertices)
     sizes = np.bincount(labels[kept], minlength=mesh.n_vertices)
     certain = np.zeros(mesh.n_vertices, np.bool_)
@@ -59,6 +62,14 @@ def _certain_lines(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLine
         clear = told & (np.abs(lines.angles) >= ratio * lines.errors)
         certain |= (sizes >= least) & (2 * np.bincount(labels[clear], minlength=mesh.n_vertices) > sizes)
     return kept & certain[labels]
+
+
+def _around_spikes(mesh: TriangleMesh) -> Bools:
+    """(n_vertices,): single vertices beside the surface, and their neighbours."""
+    sheet, index = patch_sheet(mesh)
+    is_spike = np.zeros(mesh.n_vertices, np.bool_)
+    is_spike[index[spikes(sheet)[0]]] = True
+    return rings_around(mesh.topology, is_spike, 1)
 
 
 def _bounds_strips(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:

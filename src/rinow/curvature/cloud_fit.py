@@ -52,11 +52,11 @@ def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
     at_edge = rings_around(sheet, cloud.at_border, EDGE_RINGS)
     out, direction1, direction2, noise = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)
     out[:, 0] *= shrinkage(samples, out)
-    gaussian, mean, risk, reach = out[:, :4].T.copy()
+    gaussian, mean, risk, reach, height = out[:, :5].T.copy()
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     spread = standard_errors(out, quality, cloud.at_border)
     principal = mean + half, mean - half, direction1, direction2
-    fit = Estimate(gaussian, spread, reach, mean, *principal, np.sqrt(noise), sheet.spacing, risk)
+    fit = Estimate(gaussian, spread, reach, mean, *principal, np.sqrt(noise), sheet.spacing, risk, height)
     mesh = TriangleMesh(sheet.vertices, cloud.faces) if len(cloud.faces) else None
     if mesh is not None:
         repair_ends(mesh, fit, radius is None)

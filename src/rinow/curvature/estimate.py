@@ -30,6 +30,8 @@ class Estimate:
     risk : (n_vertices,) ndarray of float or None
         Squared error of the Gaussian curvature expected by the choice of scale and order, by which estimates are
         weighted.  The spread holds more: what that choice does not see.
+    height : (n_vertices,) ndarray of float or None
+        Heights of the vertices over the surfaces fitted.
     """
 
     gaussian: Floats
@@ -43,6 +45,7 @@ class Estimate:
     noise: Floats | None = None
     spacing: Floats | None = None
     risk: Floats | None = None
+    height: Floats | None = None
 
     def with_gaussian(self, gaussian: Floats, spread: Floats) -> Estimate:
         """The same with another Gaussian curvature: k1 and k2 have it as their product.

@@ -13,10 +13,11 @@ from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 
-__all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "sample", "select", "windows"]
+__all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "sample", "scales", "select", "windows"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Scales = tuple[Floats, Floats, Floats]
 
 PILOT_RADII, PILOT_ORDER = 10, 6
 """Balls and orders of the fits over the tangent plane."""
@@ -33,6 +34,8 @@ DENSE = 6.0
 
 LADDER = np.array([1.6, 2.0, 2.5, 3.1, 3.8, 4.7, 5.8, 7.2, 9.0, 11.2, 14.0, 17.0])
 """Radii of balls, in spacings."""
+RUNG = np.log(LADDER[-1] / LADDER[0]) / (len(LADDER) - 1)
+"""Logarithm of the step from one to the next."""
 
 
 class Ladder(NamedTuple):
@@ -80,7 +83,8 @@ class Samples(NamedTuple):
     """What the sample tells.
 
     For each vertex the samples near it (compressed rows); for each sample the vertices it speaks for (compressed rows),
-    its logarithmic risks of H over the plane and of K over the torus for each radius and order, its choice and noise.
+    its logarithmic risks of H over the plane and of K over the torus for each radius and order, its choice, noise and
+    spacing.
     """
 
     starts: Ints
@@ -91,6 +95,7 @@ class Samples(NamedTuple):
     torus_logs: Floats
     choice: Choice
     noise: Floats
+    spacing: Floats
 
 
 def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -> Samples:
@@ -113,7 +118,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -
     member_starts, members = members_of_discs(sheet, everything, centres, np.full(m, NEAR * radius), room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
-    return Samples(starts, near, member_starts, members, plane_logs, torus_logs, choice, noise)
+    return Samples(starts, near, member_starts, members, plane_logs, torus_logs, choice, noise, sheet.spacing[centres])
 
 
 def _examine(
@@ -150,22 +155,38 @@ def _examine(
     return logs - power * np.log(spacing)[:, None, None], choice, noise * spacing**2
 
 
-def windows(samples: Samples) -> tuple[Ints, Ints, Ints, Floats]:
-    """For each vertex the least and largest index of radius and the highest order chosen near it, and the noise."""
+def windows(samples: Samples, scales: Scales) -> tuple[Ints, Ints, Ints, Floats]:
+    """For each vertex the least and largest index of radius and the highest order chosen near it, and the noise.
+
+    Where the spacing is another one than at a sample, the best radius is between that with as many vertices (without
+    noise) and the same length (with noise): both count.
+    """
     n = len(samples.starts) - 1
     low, high, top, noise = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n, np.int32), np.empty(n)
     choice = samples.choice
-    covers.windows(samples.starts, samples.near, choice.radius, choice.order, samples.noise, low, high, top, noise)
+    known = choice.radius, choice.order, samples.noise
+    n_radii = samples.torus_logs.shape[1]
+    covers.windows(samples.starts, samples.near, *known, *scales, n_radii, low, high, top, noise)
     unknown = high < 0
-    low[unknown], high[unknown], top[unknown] = 0, samples.torus_logs.shape[1] - 1, 4
+    low[unknown], high[unknown], top[unknown] = 0, n_radii - 1, 4
     return low, high, top, noise
 
 
-def chosen_at(vertices: Ints, samples: Samples, logs: Floats) -> Choice:
+def scales(samples: Samples, sheet: balls.Sheet, at_edge: NDArray[np.bool_]) -> Scales:
+    """Spacings of vertices and samples, and the step of the ladder.
+
+    It is infinite, so that radii in spacings are taken over as they are, if there is one radius only, and near a
+    boundary: there the spacing is known less, and a ball that is small has too few points.
+    """
+    is_one = samples.torus_logs.shape[1] == 1
+    return sheet.spacing, samples.spacing, np.where(at_edge | is_one, np.inf, RUNG)
+
+
+def chosen_at(vertices: Ints, samples: Samples, scales: Scales, logs: Floats) -> Choice:
     """The least mean logarithmic risk among the samples near each vertex."""
     choice = _empty_choice(len(vertices))
     table = logs.reshape(len(logs), logs.shape[1] * logs.shape[2])
-    covers.choices(vertices, samples.starts, samples.near, table, N_ORDERS, N_BLOCKS, *choice)
+    covers.choices(vertices, samples.starts, samples.near, table, *scales, N_ORDERS, N_BLOCKS, *choice)
     return choice
 
 

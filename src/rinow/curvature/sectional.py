@@ -14,10 +14,10 @@ from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, 
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
-from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, select, windows
+from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, scales, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, rings_around, stencil_surface
-from rinow.curvature.strays import stray_vertices
+from rinow.curvature.strays import spikes, stray_vertices
 from rinow.kernels import balls, patch_driver, patches, quadrics, risks
 from rinow.mesh import TriangleMesh
 
@@ -120,6 +120,10 @@ def sectional(
     """
     is_stray, on_edge, ends = stray_vertices(mesh)
     sheet, index = patch_sheet(mesh, is_stray)
+    alone, beside = (index[v] for v in spikes(sheet))
+    if len(alone):
+        is_stray[alone] = True
+        sheet, index = patch_sheet(mesh, is_stray)
     n = mesh.n_vertices
     tasks = Tasks(executor or SerialExecutor())
     if progress is not None:
@@ -130,14 +134,15 @@ def sectional(
     out, direction1, direction2, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
     out[:, 0] *= shrinkage(samples, out)
     errors = standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
-    columns = *out[:, :4].T, errors
-    gaussian, mean, risk, reach, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
+    columns = *out[:, :5].T, errors
+    gaussian, mean, risk, reach, height, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
     noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     principal = mean + half, mean - half, direction1, direction2
-    estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk)
+    estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height)
     estimate.put(on_edge, ends)
+    estimate.put(alone, beside)
     repair_ends(mesh, estimate, radius is None)
     flatten(estimate, flat_vertices(mesh))
     if progress is not None:
@@ -157,11 +162,12 @@ def blended_patches(
     sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, at_edge: NDArray[np.bool_], tasks: Tasks
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """What `patches.mean_values` tells at the vertices of the sheet, and the variance of the noise."""
-    low, high, top, noise = windows(samples)
+    between = scales(samples, sheet, at_edge)
+    low, high, top, noise = windows(samples, between)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, core)
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
-    plane, choice = (chosen_at(centres, samples, logs) for logs in (samples.plane_logs, samples.torus_logs))
+    plane, choice = (chosen_at(centres, samples, between, logs) for logs in (samples.plane_logs, samples.torus_logs))
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
     window = _widened(low[centres], high[centres] + np.where(beside, EDGE_RADII, 0), top[centres], len(ladder.reaches))
     if quality.selects or beside.any():

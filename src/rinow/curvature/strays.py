@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
+from rinow.curvature.cloud_sheet import NEAREST
+from rinow.curvature.cloud_strays import DEVIATIONS, SPACINGS
+from rinow.curvature.stencils import N_BLOCKS
+from rinow.kernels import balls, cloud_strays, stencils
 from rinow.kernels.adjacency import BOUNDARY, NONMANIFOLD
 from rinow.mesh import TriangleMesh
 
-__all__ = ["stray_vertices"]
+__all__ = ["spikes", "stray_vertices"]
 
 Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
+
+ALONE = 4.0
+"""Square of a height over the neighbours, over the mean square of theirs, from which on it may be a spike."""
 
 ON_EDGE = 1e-12
 """How much the two shorter sides of a face exceed the longest, over it, where the vertex between them lies on it."""
@@ -52,6 +63,44 @@ def stray_vertices(mesh: TriangleMesh) -> tuple[Bools, Indices, Indices]:
     on_edge, first = np.unique(on_edge, return_index=True)
     is_stray[on_edge] = True
     return is_stray, on_edge, ends[first]
+
+
+def spikes(sheet: balls.Sheet) -> tuple[Indices, Indices]:
+    """Vertices alone beside the surface of those around them, and for each its nearest neighbour that is not.
+
+    They are sought as in point clouds (`rinow.curvature.cloud_strays`), but only among those that stand out from their
+    ring much more than its other members from theirs.
+    """
+    none = np.empty(0, np.intp)
+    height = _heights_over_rings(sheet)
+    around = (_ring_sums(height**2, sheet) - height**2) / np.maximum(np.diff(sheet.offsets), 1)
+    likely = np.flatnonzero((np.abs(height) > 0.5 * SPACINGS * sheet.spacing) & (height**2 > ALONE * around))
+    if not len(likely) or len(height) <= NEAREST:
+        return none, none
+    found_near: tuple[Any, Any] = KDTree(sheet.vertices).query(sheet.vertices[likely], NEAREST + 1)
+    distances, near = found_near
+    offsets, middles = np.empty((2, len(likely)))
+    points, normals = (np.concatenate([x[likely], x]) for x in (sheet.vertices, sheet.normals))
+    reach = np.ascontiguousarray(distances[:, -1])
+    cloud_strays.offsets(points, normals, near[:, 1:] + len(likely), reach, N_BLOCKS, offsets, middles)
+    found = offsets > np.maximum(DEVIATIONS * middles, SPACINGS * sheet.spacing[likely])
+    is_spike = np.isin(near[found], likely[found])
+    return likely[found], near[found, np.argmin(is_spike, axis=1)]
+
+
+def _heights_over_rings(sheet: balls.Sheet) -> Floats:
+    """(n_vertices,): height of each vertex over the mean of its neighbours."""
+    count = np.maximum(np.diff(sheet.offsets), 1)
+    height = np.zeros(len(sheet.spacing))
+    for x, n in zip(sheet.vertices.T, sheet.normals.T, strict=True):
+        height += n * (x - (_ring_sums(np.ascontiguousarray(x), sheet) - x) / count)
+    return height
+
+
+def _ring_sums(values: Floats, sheet: balls.Sheet) -> Floats:
+    sums = np.empty_like(values)
+    stencils.ring_sums(values, sheet.offsets, sheet.neighbours, sums)
+    return sums
 
 
 def _fin_tips(mesh: TriangleMesh) -> Bools:

@@ -18,8 +18,10 @@ __all__ = ["single_rings", "with_detail"]
 
 Floats = NDArray[np.float64]
 
-NOISY = 0.001
-"""Noise of the positions, over the spacing, below which fits have resolved everything."""
+OF_HEIGHTS = (0.05, 0.2)
+"""Correlations of the heights of neighbours over the fits up to which these are noise, and from which detail."""
+SMALL = 0.1
+"""Heights, in spacings, that show no detail: their square is added to the variance."""
 OF_FITS, OF_CUBICS, OF_QUARTICS = (-0.05, 0.05), (-0.1, 0.1), (0.1, 0.3)
 """Correlations of neighbours up to which a difference is noise, and from which detail: of quadrics or quartics from
 fits, of single rings from cubics, of quartics from cubics.  White noise has -0.14, -0.25 and -0.1."""
@@ -46,26 +48,29 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     around it.  So where the difference of two estimates is positively correlated between neighbours it is detail that
     one of them has missed.
 
-    - Quartics of three rings against fits, where these speak of noise: with detail in between, rings are taken.  They
-      are not even computed where quadrics of two rings differ by noise; with little noise these differ everywhere, by
-      what a quadric itself misses of a smooth surface.
+    - Heights of the vertices over the fits.  Independent noise leaves them uncorrelated on every triangulation, and
+      what is small beside the spacing is noise too, correlated or not.
+    - Quartics of three rings against fits: with detail in between, rings are taken.
     - Single rings against cubics of three rings, which they are averaged with as far as those miss detail.
     - Quartics against cubics.  They come nearest to the truth, if there is detail in between, and if they in turn leave
       no detail to single rings; if they do, then waves are too short for any polynomial.
     """
-    if estimate.mean is None or estimate.noise is None or estimate.spacing is None:
+    if estimate.mean is None or estimate.height is None or estimate.spacing is None:
         return estimate
-    with np.errstate(invalid="ignore"):
-        is_noisy = estimate.noise > NOISY * estimate.spacing
-    if not is_noisy.any():
+    spacing = estimate.spacing
+    height = np.clip(estimate.height / spacing, -1.0, 1.0)
+    if not np.fmax.reduce(np.abs(height), initial=0.0) > SMALL * OF_HEIGHTS[0] ** 0.5:  # no correlation exceeds that
         return estimate
-    spacing, star, jets = estimate.spacing, _two_rings(mesh), np.empty((mesh.n_vertices, 2, 2))
-    if not _common_share(mesh, (star.mean - estimate.mean) * spacing, OF_FITS).any():  # type: ignore[operator]
+    share = _common_share(mesh, height, OF_HEIGHTS, SMALL)
+    share[~np.isfinite(estimate.gaussian) | mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
+    if not share.any():
         return estimate
+    star, jets = _two_rings(mesh), np.empty((mesh.n_vertices, 2, 2))
     ring_jets.ring_jets(stencil_surface(mesh), N_BLOCKS, jets)
-    share = _common_share(mesh, (jets[:, 1, 1] - estimate.mean) * spacing, OF_FITS)
-    share[~(is_noisy & np.isfinite(star.gaussian) & np.isfinite(estimate.gaussian))] = 0.0
-    share[mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
+    share = np.minimum(
+        share, _common_share(mesh, _without_outliers(mesh, (jets[:, 1, 1] - estimate.mean) * spacing), OF_FITS)
+    )
+    share[~np.isfinite(star.gaussian)] = 0.0
     if not share.any():
         return estimate
     return _blend(estimate, _with_detail_of_rings(mesh, star, jets, spacing), share)
@@ -85,7 +90,7 @@ def _with_detail_of_rings(mesh: TriangleMesh, star: Estimate, jets: Floats, spac
     single, cubic, quartic = single_rings(mesh), jets[:, 0], jets[:, 1]
 
     def share(step: Floats, correlations: tuple[float, float]) -> Floats:
-        return _common_share(mesh, step[:, 1] * spacing, correlations)
+        return _common_share(mesh, _without_outliers(mesh, step[:, 1] * spacing), correlations)
 
     values = cubic + _times(HALF * share(single - cubic, OF_CUBICS), single - cubic)
     of_quartic = np.minimum(share(quartic - cubic, OF_QUARTICS), share(single - quartic, LEFT))
@@ -131,17 +136,26 @@ def single_rings(mesh: TriangleMesh) -> Floats:
     return np.stack((np.where(is_closed, angle_defect(mesh).gaussian, np.nan), mean), axis=1)
 
 
-def _common_share(mesh: TriangleMesh, residual: Floats, correlations: tuple[float, float]) -> Floats:
-    """(n_vertices,): 0 where neighbours have a residual in common as the first correlation says, 1 as the second."""
-    known = np.isfinite(residual) & ~mesh.topology.vertex_is_boundary
-    middle = float(np.median(np.abs(residual[known]))) if known.any() else 0.0
-    largest = LARGEST * 2.0 ** (np.round(STEPS * np.log2(middle)) / STEPS) if middle > 0.0 else 0.0
-    r = np.where(known, np.clip(residual, -largest, largest), 0.0)
-    product, square = r * _ring_means(mesh, r, 1, itself=False), r * r
+def _common_share(
+    mesh: TriangleMesh, residual: Floats, correlations: tuple[float, float], least: float = 0.0
+) -> Floats:
+    """(n_vertices,): 0 where neighbours have a residual in common as the first correlation says, 1 as the second.
+
+    A residual much below `least` is in common to none.
+    """
+    r = np.where(np.isfinite(residual) & ~mesh.topology.vertex_is_boundary, residual, 0.0)
+    product, square = r * _ring_means(mesh, r, 1, itself=False), r * r + least * least
     near = _share_of(correlations, _ring_means(mesh, product, PASSES), _ring_means(mesh, square, PASSES))
     component = mesh.topology.components + 1
     whole = _share_of(correlations, *(np.bincount(component, x).astype(np.float64) for x in (product, square)))
     return np.minimum(near, np.round(STEPS * whole[component]) / STEPS)
+
+
+def _without_outliers(mesh: TriangleMesh, residual: Floats) -> Floats:
+    known = np.isfinite(residual) & ~mesh.topology.vertex_is_boundary
+    middle = float(np.median(np.abs(residual[known]))) if known.any() else 0.0
+    largest = LARGEST * 2.0 ** (np.round(STEPS * np.log2(middle)) / STEPS) if middle > 0.0 else 0.0
+    return np.clip(residual, -largest, largest)
 
 
 def _share_of(correlations: tuple[float, float], covariance: Floats, variance: Floats) -> Floats:

@@ -58,9 +58,12 @@ def robust_fit(terms, heights, weights, residuals):
 
 @parallel_kernel
 def offsets(points, normals, near, reach, n_blocks, out, middles):
-    """Write each point's distance from the quadric through its neighbours, and their median distance from it."""
+    """Write the distance of the first points from the quadrics through their neighbours, and the median one of these.
+
+    Row v of `near` has the neighbours of points[v].
+    """
     for block in prange(n_blocks):
-        n, k = points.shape[0], near.shape[1]
+        n, k = near.shape
         terms, heights, weights, residuals = np.empty((k, 6)), np.empty(k), np.empty(k), np.empty(k)
         for v in range(n * block // n_blocks, n * (block + 1) // n_blocks):
             out[v], middles[v] = 0.0, 0.0

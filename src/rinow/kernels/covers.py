@@ -91,8 +91,14 @@ def link(places, sources, radii, starts, n_blocks, sheet, counts, links):
             counts[i] = k
 
 
+@inner
+def steps_between(sample, vertex, rung):
+    """Steps of the ladder by which a radius in spacings of a sample is farther up in spacings of a vertex."""
+    return math.floor(math.log(sample / vertex) / rung + 0.5)
+
+
 @parallel_kernel
-def windows(starts, samples, radius, order, noise, low, high, top, sigma2):
+def windows(starts, samples, radius, order, noise, spacing, at_samples, rung, n_radii, low, high, top, sigma2):
     """Write the range of radii and the highest order of the samples near each vertex, and the noise between them."""
     for v in prange(len(starts) - 1):
         low[v], high[v], top[v] = 127, -1, 0  # no sample
@@ -101,7 +107,8 @@ def windows(starts, samples, radius, order, noise, low, high, top, sigma2):
             s = samples[i]
             if radius[s] < 0:
                 continue
-            low[v], high[v] = min(low[v], radius[s]), max(high[v], radius[s])
+            same = min(max(radius[s] + steps_between(at_samples[s], spacing[v], rung[v]), 0), n_radii - 1)
+            low[v], high[v] = min(low[v], same, radius[s]), max(high[v], same, radius[s])
             top[v] = max(top[v], order[s])
             total += math.log(max(noise[s], 1e-300))
             count += 1
@@ -109,29 +116,35 @@ def windows(starts, samples, radius, order, noise, low, high, top, sigma2):
 
 
 @inner
-def sum_logs(rows, logs, totals, counts):
-    """Write the sums of those rows of logs (m, k) that have a value in a column, and how many there are."""
+def sum_logs(rows, logs, shifts, totals, counts):
+    """Write the sums of those rows of logs (m, k) that have a value in a column, and how many there are.
+
+    Columns of the i-th row are moved up by shifts[i].
+    """
     totals[:], counts[:] = 0.0, 0.0
-    for row in rows:
-        log = logs[row]
-        for c in range(len(totals)):
-            is_known = not math.isnan(log[c])
-            totals[c] += log[c] if is_known else 0.0
+    n = len(totals)
+    for i in range(len(rows)):
+        log, up = logs[rows[i]], shifts[i]
+        for c in range(max(up, 0), min(n + up, n)):
+            is_known = not math.isnan(log[c - up])
+            totals[c] += log[c - up] if is_known else 0.0
             counts[c] += 1.0 if is_known else 0.0
 
 
 @parallel_kernel
-def choices(vertices, starts, samples, logs, n_orders, n_blocks, radius, order, risk):
+def choices(vertices, starts, samples, logs, spacing, at_samples, rung, n_orders, n_blocks, radius, order, risk):
     """Write the radius and order of the least mean logarithmic risk among the samples near each vertex; -1 without.
 
     Column j n_orders + d of the logs belongs to the radius j and the order d + 2.
     """
     n = len(vertices)
     for block in prange(n_blocks):
-        totals, counts = np.empty(logs.shape[1]), np.empty(logs.shape[1])
+        totals, counts, shifts = np.empty(logs.shape[1]), np.empty(logs.shape[1]), np.empty(len(logs), np.int64)
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
             near = samples[starts[vertices[i]] : starts[vertices[i] + 1]]
-            sum_logs(near, logs, totals, counts)
+            for k in range(len(near)):
+                shifts[k] = n_orders * steps_between(at_samples[near[k]], spacing[vertices[i]], rung[vertices[i]])
+            sum_logs(near, logs, shifts, totals, counts)
             best = np.inf
             radius[i], order[i], risk[i] = -1, 0, np.inf
             for c in range(logs.shape[1]):

@@ -23,7 +23,7 @@ square of that ratio."""
 SYMMETRIC = 1.5
 """Largest ratio of variances of stencils that count as symmetric."""
 N_VALUES = 15
-"""Weight; weighted K, H, risk, radius; six entries of the second fundamental form; normal; order."""
+"""Weight; weighted K, H, risk, radius; six entries of the second fundamental form; normal; height over the fit."""
 
 
 class Patch(NamedTuple):
@@ -193,10 +193,10 @@ def write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, 
             dot = out[11] * sheet.normals[q, 0] + out[12] * sheet.normals[q, 1] + out[13] * sheet.normals[q, 2]
             sign = 1.0 if dot >= 0.0 else -1.0
         out[1] -= bias
-        out[3], out[4], out[14] = risk, reach * spacing, order
+        out[3], out[4], out[14] = risk, reach * spacing, (points[2, j] - jet[0]) * spacing
         out[0] = weight
         for m in range(1, N_VALUES):
-            out[m] *= weight * (sign if m == 2 or 5 <= m < 14 else 1.0)
+            out[m] *= weight * (sign if m == 2 or 5 <= m else 1.0)
         vertices[k] = q
         k += 1
 
@@ -231,7 +231,7 @@ def add_values(vertices, values, totals):
 
 @parallel_kernel
 def mean_values(totals, normals, out, direction1, direction2):
-    """Write K, H, risk, radius, order, variance of K between patches, and principal directions of the weighted means.
+    """Write K, H, risk, radius, height over the fits, variance of K between them, and directions of the means.
 
     All are nan without a patch; k1 >= k2.  Curvatures change their sign here: positive where the surface bends away
     from its normal.
