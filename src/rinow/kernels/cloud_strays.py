@@ -57,15 +57,16 @@ def robust_fit(terms, heights, weights, residuals):
 
 
 @parallel_kernel
-def offsets(points, normals, near, reach, n_blocks, out, middles):
-    """Write each point's distance from the quadric through its neighbours, and their median distance from it."""
+def offsets(points, normals, near, reach, n_blocks, out, middles, largest):
+    """Write each point's distance from the quadric through its neighbours, and their median and largest one from it."""
     for block in prange(n_blocks):
         n, k = points.shape[0], near.shape[1]
         terms, heights, weights, residuals = np.empty((k, 6)), np.empty(k), np.empty(k), np.empty(k)
         for v in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            out[v], middles[v] = 0.0, 0.0
+            out[v], middles[v], largest[v] = 0.0, 0.0, 0.0
             normal = (normals[v, 0], normals[v, 1], normals[v, 2])
             if normal != (0.0, 0.0, 0.0):
                 local_terms(v, near[v], points, normal, reach[v], terms, heights)
                 height, middle = robust_fit(terms, heights, weights, residuals)
                 out[v], middles[v] = abs(height) * reach[v], middle * reach[v]
+                largest[v] = residuals.max() * reach[v]
