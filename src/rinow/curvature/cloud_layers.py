@@ -121,7 +121,8 @@ def _drop_strangers(points: Floats, near: Near, owners: Indices) -> None:
 def _write(near: Near, owners: Indices, distances: Floats, indices: Indices, known: Bools) -> None:
     """Overwrite rows by the first of the known points, as many as fit, the rest by their owners."""
     first = np.argsort(~known, axis=1, kind="stable")[:, :NEAREST]
-    known, indices, distances = (np.take_along_axis(x, first, axis=1) for x in (known, indices, distances))
+    known, indices = np.take_along_axis(known, first, axis=1), np.take_along_axis(indices, first, axis=1)
+    distances = np.take_along_axis(distances, first, axis=1)
     count = np.maximum(np.count_nonzero(known, axis=1, keepdims=True), 1)
     # As far as so many points of the same density would be.
     farthest = np.take_along_axis(distances, count - 1, axis=1) * np.sqrt(NEAREST / count)
