@@ -6,7 +6,8 @@ import pytest
 import rinow
 import shapes
 from rinow import VertexStatus
-from rinow.curvature.cloud_sheet import cloud_sheet, nearest_points
+from rinow.curvature.cloud_layers import nearest_points
+from rinow.curvature.cloud_sheet import cloud_sheet
 from rinow.errors import InvalidInputError
 
 SHAPES = {
@@ -139,6 +140,44 @@ def test_signs_of_two_parts_and_of_a_noisy_torus():
     # A point far above is no reason to turn the torus.
     above = rinow.point_cloud_curvature(np.concatenate([torus.vertices, [[0.5, 0, 5]]]))
     assert (above.mean[:n][outer] > 0).all()
+
+
+@pytest.mark.parametrize("gap", [1.5, 2.0, 3.0])
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_two_close_spheres_are_two(gap, noise):
+    outer, rng = shapes.irregular_sphere(1500), np.random.default_rng(9)
+    h = np.sqrt(4 * np.pi / 1500)
+    r = 1 - gap * h
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    points = np.concatenate([outer.vertices, r * shapes.irregular_sphere(int(1500 * r * r)).vertices @ turn])
+    exact = np.where(np.arange(len(points)) < len(outer.vertices), 1.0, r**-2)
+    cloud = rinow.point_cloud_curvature(points + noise * h * rng.normal(size=points.shape))
+    has_value = np.isfinite(cloud.gaussian)
+    # Taken for one sheet, they were noise of one spacing: errors of 0.1 to 40 at points with status OK.
+    assert has_value.mean() > 0.95
+    assert np.abs(cloud.gaussian / exact - 1)[has_value].max() < 0.1
+
+
+def test_plates_whose_sheets_cannot_be_told_are_unresolved():
+    rng = np.random.default_rng(10)
+    points = np.column_stack([rng.uniform(0, 30, (1800, 2)), np.repeat([0.0, 1.0], 900)])
+    cloud = rinow.point_cloud_curvature(points)
+    inside = np.abs(points[:, :2] - 15).max(axis=1) < 10
+    assert (cloud.status == VertexStatus.UNRESOLVED)[inside].mean() > 0.3
+    known = inside & np.isfinite(cloud.gaussian)
+    # Taken for one sheet, they had values up to 0.2; those whose sheets are told have 0.
+    assert np.abs(cloud.gaussian[known]).max() < 1e-2
+
+
+@pytest.mark.parametrize("height", [3.0, 6.0])
+def test_many_strays_far_above_are_left_out(height):
+    torus, rng = shapes.irregular_torus(2500), np.random.default_rng(11)
+    n, mesh = len(torus.vertices), rinow.TriangleMesh(torus.vertices, torus.faces)
+    lifted = rng.choice(n, n // 20, replace=False)
+    strays = torus.vertices[lifted] + height * mesh.mean_edge_length * mesh.vertex_normals[lifted]
+    cloud = rinow.point_cloud_curvature(np.concatenate([torus.vertices, strays]))
+    is_left_out = cloud.status == VertexStatus.UNRESOLVED
+    assert is_left_out[n:].mean() > 0.95 and is_left_out[:n].mean() < 0.01
 
 
 def test_sheets_five_spacings_apart_are_two():

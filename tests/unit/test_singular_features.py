@@ -201,6 +201,36 @@ def test_open_crease_ends_at_the_boundary():
     assert len(found.corners) == len(found.cone_points) == 0
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+@pytest.mark.parametrize(("steps", "slope"), [(8, 0.8), (16, 0.8), (16, -0.6)])
+def test_crease_that_fades_is_found_where_it_is_sharp(steps, slope, noise):
+    x, y = (g.ravel() for g in np.meshgrid(*(np.linspace(-1, 1, 2 * steps + 1),) * 2, indexing="ij"))
+
+    def height(x, y):
+        s = np.clip(-y, 0, 1)
+        return -slope * np.abs(x) * s * s * (3 - 2 * s)
+
+    F = shapes._grid_faces(2 * steps + 1, 2 * steps + 1, None, closed=False)
+    shape = shapes.noisy(shapes.without_curvature(np.stack([x, y, height(x, y)], axis=1), F), noise)
+    found = {tuple(e) for e in rinow.singular_features((shape.vertices, shape.faces)).crease_edges}
+    line = np.flatnonzero(x == 0)
+    edges = np.stack([line[:-1], line[1:]], axis=1)
+    angles = 2 * np.arctan(np.abs(height(1.0, y[edges].mean(axis=1))))
+    # Edges of 40° start a line, which may end a step after or before the angle of 20° that an edge needs.
+    assert {tuple(e) for e in edges[angles > np.radians(40)]} <= found
+    assert found <= {tuple(e) for e in edges[angles > np.radians(8)]}
+
+
+@pytest.mark.parametrize("defect", [0.1, 0.3, 1.0, 3.0])
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+def test_apexes_of_flat_and_steep_cones(defect, noise):
+    # Slopes of 0.18 to 1.6: the flank has the cone angle 2π sin(half-angle), its six faces at the apex a tenth less.
+    slope = np.sqrt((1 - defect / (2 * np.pi)) ** -2 - 1)
+    found = features_of(parts.noisy(parts.cone(0.1, slope=slope), noise))
+    assert len(found.cone_points) == 1
+    np.testing.assert_allclose(found.cone_angles, 2 * np.pi - defect, atol=0.02 + 10 * noise, rtol=0.1)
+
+
 def test_barriers_are_the_creases_by_edges_of_the_mesh():
     part = parts.noisy(parts.cylinder(0.15), 0.02)
     mesh = rinow.TriangleMesh(part.vertices, part.faces)

@@ -8,20 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
-from scipy.spatial import KDTree
 
 from rinow.curvature.cloud_faces import agreed_triangles
 from rinow.curvature.stencils import N_BLOCKS, NEEDLES
 from rinow.kernels import balls, clouds, stencils
 
-__all__ = ["NEAREST", "Cloud", "cloud_sheet", "nearest_points"]
+__all__ = ["Cloud", "cloud_sheet"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-NEAREST = 36
-"""Points looked at around each one: five rows of points that are five times as near along a row as across."""
 SKEW = 0.1
 """Shear of the plane along the long axis of a star.  Rectangles of rows of points have two Delaunay triangulations;
 all are cut along the same one of their diagonals then, as in a structured mesh."""
@@ -38,12 +35,6 @@ class Cloud(NamedTuple):
     sheet: balls.Sheet
     faces: Indices
     at_border: Bools
-
-
-def nearest_points(points: Floats) -> tuple[Floats, Indices]:
-    """(n_points, k): distances and indices of the 36 points nearest to each one, or of all if there are fewer."""
-    distances, near = KDTree(points).query(points, min(NEAREST, len(points) - 1) + 1)
-    return distances[:, 1:].copy(), np.asarray(near, np.intp)[:, 1:].copy()
 
 
 def cloud_sheet(points: Floats, distances: Floats, near: Indices) -> Cloud:

@@ -16,8 +16,8 @@ Indices = NDArray[np.intp]
 
 N_BLOCKS = 16
 """Pieces a kernel cuts its work into; each has scratch of its own."""
-LEAST_DEFECT = 0.1
-"""Defect in radians below which nothing is called a cone point: half-angles up to 80°."""
+LEAST_DEFECT = 0.08
+"""Defect in radians below which nothing is called a cone point: half-angles up to 81°."""
 DEFECT_NOISE = 12.0
 """The same in standard deviations of the defects around: the tails of noise beside a crease are long."""
 OWN_SHARE, RIVAL_SHARE = 0.6, 2.0

@@ -42,6 +42,8 @@ LEAST_LINE, LEAST_STRONG = 4, 2
 """Edges of a line, and strong ones among them, below which it is dropped."""
 LEAST_OPEN_LINE = 6
 """Edges of a chain with a free end below which it is dropped: creases close, branch, or are long."""
+SHARP_ANGLE, SHARP_NOISE = np.radians(40.0), 9.0
+"""Least jump of an edge that counts for two there: no noise and no round makes it."""
 PARALLEL_SHARE = 0.5
 """Of three crease edges around one face, the one with less than this share of the jump of the others is dropped."""
 
@@ -174,7 +176,7 @@ def crease_lines_of(turnings: EdgeTurnings) -> CreaseLines:
     for _ in range(2):
         jumps, errors = turnings.jumps(candidates, barrier)
         strong, weak = _evidence(theta, jumps, errors)
-        barrier = _linked(turnings, strong, weak, np.abs(jumps))
+        barrier = _linked(turnings, strong, weak, np.abs(jumps), errors)
     degrees, turns = np.empty(mesh.n_vertices, np.intp), np.empty(mesh.n_vertices)
     t = mesh.topology
     crease_lines.junctions(
@@ -199,7 +201,7 @@ def _evidence(theta: Floats, jumps: Floats, errors: Floats) -> tuple[Bools, Bool
     return strong, weak
 
 
-def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, strength: Floats) -> Bools:
+def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, strength: Floats, errors: Floats) -> Bools:
     """Lines of strong edges continued by weak ones, without whiskers, doubled edges and crumbs."""
     mesh, index = turnings.mesh, turnings.edge_of_halfedge
     t = mesh.topology
@@ -210,7 +212,8 @@ def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, strength: Floats
     crease_lines.weakest_sides(kept, strength, index, PARALLEL_SHARE, doubled)
     kept &= ~doubled
     may_end = t.vertex_is_boundary | t.vertex_is_on_nonmanifold_edge
-    crease_lines.remove_short_ends(kept, t.edges, may_end, *rows, LEAST_OPEN_LINE)
+    weights = np.where((strength > SHARP_ANGLE) & (strength > SHARP_NOISE * errors), 2, 1)
+    crease_lines.remove_short_ends(kept, weights, t.edges, may_end, *rows, LEAST_OPEN_LINE)
     labels = crease_lines.line_components(kept, t.edges, mesh.n_vertices)
     sizes = np.bincount(labels[kept], minlength=mesh.n_vertices)
     starts = np.bincount(labels[kept & strong], minlength=mesh.n_vertices)

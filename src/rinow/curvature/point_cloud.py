@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from rinow._arrays import as_floats, as_points
 from rinow.curvature.cloud_fit import cloud_estimate
-from rinow.curvature.cloud_sheet import cloud_sheet, nearest_points
-from rinow.curvature.cloud_strays import stray_points
+from rinow.curvature.cloud_layers import cleaned
+from rinow.curvature.cloud_sheet import cloud_sheet
 from rinow.curvature.estimate import Estimate, undefined
 from rinow.curvature.sheet import morton_order
 from rinow.curvature.status import VertexStatus
@@ -68,15 +68,19 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     closed surfaces, or, where that does not decide, as on a terrain, upwards at its highest point.  On a surface with
     one side only they change along a cut.  The Gaussian curvature does not depend on them.
 
-    Points far from all others, and single points beside the quadric of least moduli through those around them, by
-    eight standard deviations of the noise and a third of the spacing, are left out: they are UNRESOLVED.  So are points
-    whose standard error exceeds 1.5/radius²: where points fill a part of space, near creases, and on most of a curve.
+    Points far from all others, and points beside the quadric of least moduli through those around them, by eight
+    standard deviations of the noise and a third of the spacing, alone or much rarer than those, are left out: they are
+    UNRESOLVED.  So are points whose standard error exceeds 1.5/radius²: where points fill a part of space, near
+    creases, and on most of a curve.
+
+    Where a quadric does not fit all of the nearest points, that through the point is followed outwards, and only points
+    on this sheet are its neighbours.  Sheets 1.5 to 3 spacings apart are told from each other at nearly all points of
+    an even sample and at nine of ten of a random one; the others are UNRESOLVED, as are most points of nearer sheets.
 
     `spread` is that of the fits of `surface_curvature`.  With much noise a tenth of the points of a border are not seen
     to be there, and their spread is somewhat too small.
 
-    Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Sheets three to six
-    spacings apart are told from each other at most points; nearer ones are taken for one.  Lengths from 1e-140 to
+    Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Lengths from 1e-140 to
     1e140 neither overflow nor underflow.
 
     Examples
@@ -114,16 +118,17 @@ def _of_distinct(points: Floats, radius: float | None) -> tuple[Estimate, NDArra
     if n < LEAST_POINTS:
         return everywhere, status, 0
     order = morton_order(points).astype(np.intp)
-    nearest = nearest_points(points[order])
-    is_stray = stray_points(points[order], *nearest)
-    if is_stray.any():
+    near, is_stray, is_lost = cleaned(points[order])
+    n_strays = int(np.count_nonzero(is_stray))
+    if n_strays:
         order = order[~is_stray]
         if len(order) < LEAST_POINTS:
-            return everywhere, status, int(is_stray.sum())
-        nearest = nearest_points(points[order])
-    cloud = cloud_sheet(points[order], *nearest)
+            return everywhere, status, n_strays
+        near, _, is_lost = cleaned(points[order])
+    cloud = cloud_sheet(points[order], *near)
     found = cloud_estimate(cloud, radius)
+    found.gaussian[is_lost] = np.nan
     everywhere.fill(order, found)
     status[order] = np.where(cloud.at_border, VertexStatus.BOUNDARY, VertexStatus.OK)
     status[order[~np.isfinite(found.gaussian)]] = VertexStatus.UNRESOLVED
-    return everywhere, status, int(is_stray.sum())
+    return everywhere, status, n_strays

@@ -111,10 +111,11 @@ def singular_features(mesh: Any) -> SingularFeatures:
     and 4.5 standard errors, and continues one above 12° and 2.5; the errors come from the sections' deviation from
     their lines and from the noise of the vertices' heights, which is estimated from edges that turn to and fro.
     Where both sides are flat to half a degree, 8° are enough.  Lines of fewer than four edges, and open ends of
-    fewer than six that do not end at a boundary or another crease, are dropped.
+    fewer than six that do not end at a boundary or another crease, are dropped; edges of 40° and nine standard errors
+    count for two there.
 
     *Cone points.*  The defect of a disc of two rings, less the mean curvature density of the next two rings times
-    its area, must exceed 0.1 rad and 12 standard deviations of the defects around, and most of it must lie at the
+    its area, must exceed 0.08 rad and 12 standard deviations of the defects around, and most of it must lie at the
     vertex itself: a rounded tip has it spread over several.  Rings stop at creases.  At a corner it is the defect.
 
     Creases below these angles, features smaller than two edges, and facets of 35° or more in a smooth round (there

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from rinow.curvature.cloud_sheet import NEAREST
-from rinow.curvature.cloud_strays import DEVIATIONS, SPACINGS
+from rinow.curvature.cloud_layers import DEVIATIONS, NEAREST, SPACINGS
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, cloud_strays, stencils
 from rinow.kernels.adjacency import BOUNDARY, NONMANIFOLD
@@ -68,7 +67,7 @@ def stray_vertices(mesh: TriangleMesh) -> tuple[Bools, Indices, Indices]:
 def spikes(sheet: balls.Sheet) -> tuple[Indices, Indices]:
     """Vertices alone beside the surface of those around them, and for each its nearest neighbour that is not.
 
-    They are sought as in point clouds (`rinow.curvature.cloud_strays`), but only among those that stand out from their
+    They are sought as in point clouds (`rinow.curvature.cloud_layers`), but only among those that stand out from their
     ring much more than its other members from theirs.
     """
     none = np.empty(0, np.intp)
@@ -79,10 +78,10 @@ def spikes(sheet: balls.Sheet) -> tuple[Indices, Indices]:
         return none, none
     found_near: tuple[Any, Any] = KDTree(sheet.vertices).query(sheet.vertices[likely], NEAREST + 1)
     distances, near = found_near
-    offsets, middles = np.empty((2, len(likely)))
+    offsets, middles, largest = np.empty((3, len(likely)))
     points, normals = (np.concatenate([x[likely], x]) for x in (sheet.vertices, sheet.normals))
     reach = np.ascontiguousarray(distances[:, -1])
-    cloud_strays.offsets(points, normals, near[:, 1:] + len(likely), reach, N_BLOCKS, offsets, middles)
+    cloud_strays.offsets(points, normals, near[:, 1:] + len(likely), reach, N_BLOCKS, offsets, middles, largest)
     found = offsets > np.maximum(DEVIATIONS * middles, SPACINGS * sheet.spacing[likely])
     is_spike = np.isin(near[found], likely[found])
     return likely[found], near[found, np.argmin(is_spike, axis=1)]

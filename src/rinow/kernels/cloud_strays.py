@@ -57,8 +57,8 @@ def robust_fit(terms, heights, weights, residuals):
 
 
 @parallel_kernel
-def offsets(points, normals, near, reach, n_blocks, out, middles):
-    """Write the distance of the first points from the quadrics through their neighbours, and the median one of these.
+def offsets(points, normals, near, reach, n_blocks, out, middles, largest):
+    """Write distances of the first points from quadrics through their neighbours, the median and largest one of these.
 
     Row v of `near` has the neighbours of points[v].
     """
@@ -66,9 +66,10 @@ def offsets(points, normals, near, reach, n_blocks, out, middles):
         n, k = near.shape
         terms, heights, weights, residuals = np.empty((k, 6)), np.empty(k), np.empty(k), np.empty(k)
         for v in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            out[v], middles[v] = 0.0, 0.0
+            out[v], middles[v], largest[v] = 0.0, 0.0, 0.0
             normal = (normals[v, 0], normals[v, 1], normals[v, 2])
             if normal != (0.0, 0.0, 0.0):
                 local_terms(v, near[v], points, normal, reach[v], terms, heights)
                 height, middle = robust_fit(terms, heights, weights, residuals)
                 out[v], middles[v] = abs(height) * reach[v], middle * reach[v]
+                largest[v] = residuals.max() * reach[v]

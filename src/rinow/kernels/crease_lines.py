@@ -84,8 +84,11 @@ def weakest_sides(kept, strength, edge_of, share, drop):
 
 
 @kernel
-def remove_short_ends(kept, edges, may_end, edge_of, offsets, corners, length):
-    """Take away chains of fewer than `length` edges from a free end, where none may be, until none is left."""
+def remove_short_ends(kept, weights, edges, may_end, edge_of, offsets, corners, length):
+    """Take away chains that weigh less than `length` from a free end, where none may be, until none is left.
+
+    The weights (n_edges,) are whole numbers, 1 or more.
+    """
     found, chain = np.empty(3, np.intp), np.empty(length, np.intp)
     changed = True
     while changed:
@@ -94,15 +97,15 @@ def remove_short_ends(kept, edges, may_end, edge_of, offsets, corners, length):
             for side in range(2):
                 v = edges[e, side]
                 if kept[e] and not may_end[v] and kept_edges_at(v, kept, edge_of, offsets, corners, found) == 1:
-                    n, g = 0, e
-                    while n < length:
+                    n, total, g = 0, 0, e
+                    while total < length:
                         chain[n] = g
-                        n += 1
+                        n, total = n + 1, total + weights[g]
                         v = edges[g, 0] + edges[g, 1] - v
                         if may_end[v] or kept_edges_at(v, kept, edge_of, offsets, corners, found) != 2:
                             break
                         g = found[0] + found[1] - g
-                    if n < length:
+                    if total < length:
                         changed = True
                         for i in range(n):
                             kept[chain[i]] = False
