@@ -75,8 +75,8 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     -----
     A quadric of least moduli, which a few strays do not bend, goes through the points around each one, without itself.
     A curved surface of few points leaves residuals too; their median, over the points around, raises the limit.  Where
-    one of the residuals is large, the sheet of the point is followed outwards, see `kernels.cloud_layers`.  Nothing is
-    examined where fewer than 36 points are looked at.
+    one of the residuals is large, the sheet of the point is followed outwards, see `kernels.cloud_layers`; where no gap
+    parts it from other points the neighbours stay.  Nothing is examined where fewer than 36 points are looked at.
     """
     near, n = nearest_points(points), len(points)
     if near.indices.shape[1] < NEAREST:
@@ -91,24 +91,27 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     is_alone = np.count_nonzero(is_beside[near.indices[:, :N_NEAR]], axis=1) <= ALONE
     is_sparse = close > SPARSE * np.quantile(close[near.indices], 0.25, axis=1)
     farthest = np.maximum(offsets, largest) / spacing
-    is_lost = _follow_sheets(points, near, np.flatnonzero(farthest > SPACINGS), farthest > THICK)
-    is_stray = is_far | (is_beside & (is_sparse | (is_alone & is_lost)))
+    is_unclear, is_lost = _follow_sheets(points, near, np.flatnonzero(farthest > SPACINGS), farthest > THICK)
+    is_stray = is_far | (is_beside & (is_sparse | (is_alone & is_unclear)))
     return near, is_stray, is_lost & ~is_stray
 
 
-def _follow_sheets(points: Floats, near: Near, owners: Indices, is_thick: Bools) -> Bools:
-    """Overwrite the rows of some points by those on their own sheet; which thick ones were found to be on none."""
-    is_lost = np.zeros(len(points), np.bool_)
+def _follow_sheets(points: Floats, near: Near, owners: Indices, is_thick: Bools) -> tuple[Bools, Bools]:
+    """Overwrite the rows of points beside another sheet by those on their own; which thick ones are on none, or all."""
+    is_unclear, is_lost = np.zeros((2, len(points)), np.bool_)
     distances, indices = KDTree(points).query(points[owners], min(LOOKED_AT, len(points) - 1) + 1)
     distances, indices = distances[:, 1:].copy(), np.asarray(indices, np.intp)[:, 1:].copy()
     is_own, thickness = np.empty(indices.shape, np.bool_), np.empty(len(owners))
     cloud_layers.layers(owners, points, indices, distances, N_BLOCKS, is_own, thickness)
-    is_lost[owners] = (thickness > THICKEST) & is_thick[owners]
+    is_unclear[owners] = (thickness > THICKEST) & is_thick[owners]
+    parted = ~is_own.all(axis=1)
+    owners, distances, indices, is_own = owners[parted], distances[parted], indices[parted], is_own[parted]
+    is_lost[owners] = is_unclear[owners]
     _write(near, owners, distances, indices, is_own & ~is_lost[owners, None])
     _drop_strangers(points, near, owners)
     is_lost = _adopted(near, is_lost)
     _drop_strangers(points, near, owners)
-    return is_lost
+    return is_unclear, is_lost
 
 
 def _drop_strangers(points: Floats, near: Near, owners: Indices) -> None:
