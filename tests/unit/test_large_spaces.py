@@ -164,9 +164,9 @@ def test_interval_of_nets_contains_the_distance_of_the_meshes(monkeypatch):
     assert min(result.covering_radii) > 0
     assert result.lower <= exact.lower
     assert exact.upper <= result.upper
-    D = [sample_of(mesh, FOREVER, FOREVER) for mesh in (A, B)]
+    D = [sample_of(mesh, FOREVER, FOREVER, FOREVER) for mesh in (A, B)]
     monkeypatch.setattr(surfaces, "ALL_VERTICES", 1000)
-    full = [MetricSpace(sample_of(mesh, FOREVER, FOREVER).distances) for mesh in (A, B)]
+    full = [MetricSpace(sample_of(mesh, FOREVER, FOREVER, FOREVER).distances) for mesh in (A, B)]
     spaces = [space.subspace(sample.indices) for space, sample in zip(full, D, strict=True)]
     half = distortion(
         [[list(D[0].indices).index(x), list(D[1].indices).index(y)] for x, y in result.correspondence], *spaces
@@ -178,10 +178,10 @@ def test_interval_of_nets_contains_the_distance_of_the_meshes(monkeypatch):
 def test_small_mesh_becomes_a_net_when_the_time_is_over(monkeypatch, looks):
     """One point more than looks at the clock that allowed one; the intervals hold, and half the diameter is enough."""
     mesh, other = grid(5, 0.5), grid(5)
-    full = sample_of(mesh, FOREVER, FOREVER)
+    full = sample_of(mesh, FOREVER, FOREVER, FOREVER)
     assert (full.indices == np.arange(25)).all()
     assert full.covering_radius == 0.0
-    net = sample_of(mesh, Clock(0), Looks(looks))
+    net = sample_of(mesh, Clock(0), Looks(looks), FOREVER)
     assert len(net.indices) == looks + 2
     assert (net.distances == full.distances[np.ix_(net.indices, net.indices)]).all()
     assert net.covering_radius == full.distances[net.indices].min(axis=0).max()
@@ -193,18 +193,27 @@ def test_small_mesh_becomes_a_net_when_the_time_is_over(monkeypatch, looks):
     assert not rough.exact
 
 
+def test_mesh_whose_distances_take_too_long_is_compared_by_a_net(monkeypatch):
+    monkeypatch.setattr(surfaces, "SMALL_NET", 2)
+    monkeypatch.setattr(surfaces, "LARGEST_NET", 9)
+    full = sample_of(grid(5), FOREVER, FOREVER, FOREVER)
+    net = sample_of(grid(5), FOREVER, FOREVER, Looks(4))
+    assert len(full.indices) == 25 and len(net.indices) == 9
+    assert net.covering_radius == full.distances[net.indices].min(axis=0).max()
+
+
 def test_coincident_vertices_of_a_mesh_are_all_taken():
     V = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 1, 0]]
-    full = sample_of((V, [[0, 1, 2], [1, 3, 2]]), FOREVER, FOREVER)
+    full = sample_of((V, [[0, 1, 2], [1, 3, 2]]), FOREVER, FOREVER, FOREVER)
     assert (full.indices == np.arange(4)).all()
     assert full.distances[2, 3] == full.covering_radius == 0.0
 
 
 def test_eccentricity_bounds_of_a_net_hold_for_all_vertices(monkeypatch):
-    full = sample_of(grid(7, 0.5), FOREVER, FOREVER)
+    full = sample_of(grid(7, 0.5), FOREVER, FOREVER, FOREVER)
     monkeypatch.setattr(surfaces, "ALL_VERTICES", 10)
     monkeypatch.setattr(surfaces, "LARGEST_NET", 6)
-    net = sample_of(grid(7, 0.5), FOREVER, FOREVER)
+    net = sample_of(grid(7, 0.5), FOREVER, FOREVER, FOREVER)
     low, high = net.eccentricity_bounds
     true = full.distances.max(axis=1)
     assert (low <= true + 1e-12).all()  # rounding of sums of two distances
@@ -236,6 +245,6 @@ def test_eccentricities_of_nets_hold_for_every_denser_net():
     for k in (5, 10, 20):
         parts = [space.subspace(range(k)) for space in whole]
         radii = tuple(float(space.distances[:, :k].min(axis=1).max()) for space in whole)
-        found = eccentricity_gap(*(sample_of(part, FOREVER, FOREVER) for part in parts), radii)
-        assert found <= eccentricity_gap(*(sample_of(space, FOREVER, FOREVER) for space in whole)) + 1e-12
+        found = eccentricity_gap(*(sample_of(part, FOREVER, FOREVER, FOREVER) for part in parts), radii)
+        assert found <= eccentricity_gap(*(sample_of(space, FOREVER, FOREVER, FOREVER) for space in whole)) + 1e-12
         assert found / 2 <= exact.upper

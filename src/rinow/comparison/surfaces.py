@@ -32,6 +32,9 @@ LARGEST_NET, NET_BYTES = 600, 1 << 28
 SHARE, SMALL_NET, SHARES_OF_SMALL = 0.25, 100, (0.4, 0.65)
 """Share of the time left that a net takes, and for the first and second one while it has fewer points than that: these
 are compared in no time."""
+SHARE_OF_ALL = 0.08
+"""Share of the time left in which all distances of a mesh must be known, or its net is compared: some thousand points
+take ten times as long to compare."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,12 +76,14 @@ class Sample:
 
 def samples_of(X: Any, Y: Any, clock: Clock) -> tuple[Sample, Sample]:
     """The samples of two spaces or meshes, in a share of the time."""
-    first, second = SHARES_OF_SMALL
-    sample = sample_of(X, clock.part(SHARE * clock.left), clock.part(first * clock.left))
-    return sample, sample_of(Y, clock.part(SHARE * clock.left), clock.part(second * clock.left))
+    clocks = (
+        (clock.part(share * clock.left) for share in (SHARE, of_small, SHARE_OF_ALL)) for of_small in SHARES_OF_SMALL
+    )
+    first, second = (sample_of(thing, *shares) for thing, shares in zip((X, Y), clocks, strict=True))
+    return first, second
 
 
-def sample_of(thing: Any, clock: Clock, clock_of_small: Clock) -> Sample:
+def sample_of(thing: Any, clock: Clock, clock_of_small: Clock, clock_of_all: Clock) -> Sample:
     """All points of a space, or a net of a mesh that grows while there is time: to all vertices of a small one.
 
     Raises
@@ -91,7 +96,7 @@ def sample_of(thing: Any, clock: Clock, clock_of_small: Clock) -> Sample:
     if not is_mesh_like(thing):
         D = as_metric_space(thing).distances
         return Sample(np.arange(len(D)), D, D, 0.0)
-    return _net(*_connected_edges(as_mesh(thing)), clock, clock_of_small)
+    return _net(*_connected_edges(as_mesh(thing)), clock, clock_of_small, clock_of_all)
 
 
 def eccentricity_gap(X: Sample, Y: Sample, beyond: tuple[float, float] = (0.0, 0.0)) -> float:
@@ -131,7 +136,7 @@ def _check_connected(row: Floats, vertices: Indices) -> None:
         )
 
 
-def _net(graph: csr_array, vertices: Indices, clock: Clock, clock_of_small: Clock) -> Sample:
+def _net(graph: csr_array, vertices: Indices, clock: Clock, clock_of_small: Clock, clock_of_all: Clock) -> Sample:
     """Farthest points in turn, with their distances to all vertices: of a small mesh all, in their order."""
     n = len(vertices)
     size = n if n <= ALL_VERTICES else max(2, min(LARGEST_NET, NET_BYTES // (8 * n)))
@@ -143,9 +148,13 @@ def _net(graph: csr_array, vertices: Indices, clock: Clock, clock_of_small: Cloc
             _check_connected(rows[0], vertices)
         np.minimum(nearest, rows[k], out=nearest)
         nearest[chosen[k]] = -1.0  # vertices may coincide
-        if k + 1 == size or (k > 0 and (clock if k >= SMALL_NET else clock_of_small).over):
+        limit = clock_of_small if k < SMALL_NET else clock if k < LARGEST_NET else clock_of_all
+        if k + 1 == size or (k > 0 and limit.over):
             break
         chosen.append(int(nearest.argmax()))
+    if LARGEST_NET < len(chosen) < n:
+        chosen = chosen[:LARGEST_NET]
+        nearest = rows[:LARGEST_NET].min(axis=0)
     distances = rows[: len(chosen), chosen]
     distances = np.minimum(distances, distances.T)
     if len(chosen) == n:
