@@ -32,6 +32,8 @@ class Estimate:
         weighted.  The spread holds more: what that choice does not see.
     height : (n_vertices,) ndarray of float or None
         Heights of the vertices over the surfaces fitted.
+    left_out : (n_vertices,) ndarray of bool or None
+        The vertex took no part and has the values of a neighbour.
     """
 
     gaussian: Floats
@@ -46,6 +48,7 @@ class Estimate:
     spacing: Floats | None = None
     risk: Floats | None = None
     height: Floats | None = None
+    left_out: NDArray[np.bool_] | None = None
 
     def with_gaussian(self, gaussian: Floats, spread: Floats) -> Estimate:
         """The same with another Gaussian curvature: k1 and k2 have it as their product.
@@ -84,5 +87,6 @@ class Estimate:
 def undefined(n_vertices: int) -> Estimate:
     """An estimate of everything with nan everywhere."""
     width = {"direction1": (3,), "direction2": (3,)}
-    values: dict[str, Any] = {f.name: np.full((n_vertices, *width.get(f.name, ())), np.nan) for f in fields(Estimate)}
+    names = [field.name for field in fields(Estimate) if field.name != "left_out"]
+    values: dict[str, Any] = {name: np.full((n_vertices, *width.get(name, ())), np.nan) for name in names}
     return Estimate(**values)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rinow import tolerances
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
-__all__ = ["crease_notes", "mesh_notes", "weld_notes"]
+__all__ = ["crease_notes", "left_out_notes", "mesh_notes", "weld_notes"]
 
 
 def weld_notes(before: int, after: int) -> tuple[str, ...]:
@@ -29,6 +29,17 @@ def crease_notes(on_crease: NDArray[np.bool_]) -> tuple[str, ...]:
     return (
         f"{n} vertices lie on creases, where the two sides differ: their values are those of the side that bends most "
         "(status BOUNDARY), and none is taken across a crease.",
+    )
+
+
+def left_out_notes(left_out: NDArray[np.bool_] | None) -> tuple[str, ...]:
+    """What was done at vertices that tell nothing about the surface."""
+    n = 0 if left_out is None else int(np.count_nonzero(left_out))
+    if not n:
+        return ()
+    return (
+        f"{n} vertices were left out, single ones far beside the surface or in the middle of an edge: they have the "
+        "values of a neighbour.",
     )
 
 

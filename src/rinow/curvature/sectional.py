@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -143,6 +144,9 @@ def sectional(
     estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height)
     estimate.put(on_edge, ends)
     estimate.put(alone, beside)
+    left_out = np.zeros(mesh.n_vertices, np.bool_)
+    left_out[on_edge] = left_out[alone] = True
+    estimate = replace(estimate, left_out=left_out)
     repair_ends(mesh, estimate, radius is None)
     flatten(estimate, flat_vertices(mesh))
     if progress is not None:

@@ -19,7 +19,7 @@ from rinow.curvature.estimate import Estimate
 from rinow.curvature.geodesic_stars import geodesic_wald, robinson
 from rinow.curvature.intrinsic import intrinsic
 from rinow.curvature.lifted import lifted
-from rinow.curvature.notes import crease_notes, mesh_notes, weld_notes
+from rinow.curvature.notes import crease_notes, left_out_notes, mesh_notes, weld_notes
 from rinow.curvature.sectional import sectional
 from rinow.curvature.status import VertexStatus, vertex_status
 from rinow.curvature.wald import wald
@@ -192,6 +192,7 @@ def surface_curvature(
     status[on_crease & (status == VertexStatus.OK)] = VertexStatus.BOUNDARY
     result = assembled(estimate, status, chosen)
     notes += mesh_notes(surface, oriented=chosen not in BY_LENGTHS) + crease_notes(on_crease)
+    notes += left_out_notes(estimate.left_out)
     return replace(relabelled(rescaled(result, unit), index), notes=notes)
 
 
