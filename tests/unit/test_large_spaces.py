@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import pdist, squareform
 
+from clocks import Looks
 from rinow import MetricSpace, TriangleMesh, distortion, gromov_hausdorff
 from rinow.comparison import large, surfaces
 from rinow.comparison.clock import Clock
@@ -21,19 +22,6 @@ pytestmark = pytest.mark.usefixtures("compiled_searches")
 SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="dives in plain Python take minutes")
 
 FOREVER = Clock(math.inf)
-
-
-class Looks(Clock):
-    """A clock that is over after so many looks."""
-
-    def __init__(self, looks):
-        super().__init__(math.inf)
-        self.looks = looks
-
-    @property
-    def over(self):
-        self.looks -= 1
-        return self.looks < 0
 
 
 def grid(n, height=0.0):

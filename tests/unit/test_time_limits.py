@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import pdist, squareform
 
+from clocks import Looks
 from rinow.comparison import engine as engine_module
 from rinow.comparison import large_work
 from rinow.comparison.clock import Clock
@@ -15,19 +16,6 @@ from rinow.comparison.symmetry import isometries
 from rinow.kernels import compatibility, dives
 
 pytestmark = pytest.mark.usefixtures("compiled_searches")
-
-
-class Looks(Clock):
-    """A clock that is over after so many looks."""
-
-    def __init__(self, looks):
-        super().__init__(math.inf)
-        self.looks = looks
-
-    @property
-    def over(self):
-        self.looks -= 1
-        return self.looks < 0
 
 
 def spaces(n, m):
