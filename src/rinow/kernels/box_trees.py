@@ -14,6 +14,9 @@ BOX, FLAT = 11, 256
 """Numbers of a box, and the triangles in the largest one that has a slab.  Without slabs a point near the centre of a
 sphere would look into most of its boxes."""
 
+TINY = 1e-150
+"""Doubled area below which squares lose digits, and with them a unit vector its length."""
+
 NEEDLE = 1e-6
 """Squared sine of an angle below which the sides of a triangle are asked as well as its plane."""
 
@@ -118,7 +121,7 @@ def _bound_slab(corners, first, last, box):
         x, y, z = doubled_area(corners, t)
         u, v, w = u + x, v + y, w + z
     size = math.sqrt(_square(u, v, w))
-    if size == 0.0:
+    if not size > TINY:
         return
     box[6], box[7], box[8], box[9], box[10] = u / size, v / size, w / size, np.inf, -np.inf
     for t in range(first, last):
