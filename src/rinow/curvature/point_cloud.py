@@ -74,8 +74,8 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     creases, and on most of a curve.
 
     Where a quadric does not fit all of the nearest points, that through the point is followed outwards, and only points
-    on this sheet are its neighbours.  Sheets 1.5 to 3 spacings apart are told from each other at nearly all points of
-    an even sample and at nine of ten of a random one.  Nearer sheets are taken for one with noise.
+    on this sheet are its neighbours.  Sheets are told from each other at nearly all points if they are 1.5 spacings
+    apart in an even sample, two in a random one.  Nearer sheets are taken for one with noise, and so are their values.
 
     `spread` is that of the fits of `surface_curvature`.  With much noise a tenth of the points of a border are not seen
     to be there, and their spread is somewhat too small.
