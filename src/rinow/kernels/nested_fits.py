@@ -12,8 +12,12 @@ N_ORDERS = MAX_ORDER - 1
 """Orders 2..8."""
 WIDTH = 2 * MAX_ORDER + 1
 """Degrees of the moments, from 0 on."""
+MOMENTS, OFFSETS = 24, 16
+"""Length of the rows of moments and offsets: their degrees, rounded up to LANES."""
 AT_ONCE = 4
-"""Points added to moments, and rows subtracted from another one, in one go: rows are short, loops over them many."""
+"""Points added to moments, and rows subtracted from others, in one go: rows are short, loops over them many."""
+LANES = 8
+"""Loops over rows begin and end at multiples of it: the last few entries one by one would take as long as the rest."""
 TERMS = (1, 3, 6, 10, 15, 21, 28, 36, 45)
 """Number of monomials of degree at most d."""
 V_POWERS = np.array([b for d in range(MAX_ORDER + 1) for b in range(d + 1)])
@@ -29,7 +33,10 @@ the points they do not.  The polynomials are the same.
 """
 ROOMY = 2.0
 """Points over unknowns below which a fit may be loose beside its centre."""
-CROWD = int(ROOMY * TERMS[MAX_ORDER])
+ROWS, STRIDE = 48, 56
+"""Rows of a factor, in fours, of which the last ones are spare, and columns: monomials, targets, data, spare ones."""
+PLACES, COLUMNS = 92, 280
+"""The most points of a crowd, rounded up to AT_ONCE, and second derivatives there, three each, rounded up to LANES."""
 SPARE, SURPLUS = 2, 1.25
 """An order needs SPARE more points than unknowns, and above 2 also SURPLUS as many."""
 
@@ -40,7 +47,7 @@ class Fits(NamedTuple):
     moments[ball, b, a] and offsets[ball, b, a] are the sums of u^a v^b and of w u^a v^b, `sums` and `offset_sums` those
     of one ball by degree, u and v being counted from `origin`.  Of the points still to be added `powers` has u^a and
     `places` has v and w.  targets[i] are value and derivatives f1, f2, f11/2, f12, f22/2 of a monomial at the centre.
-    `monomials`, `columns` and `bends` serve points beside it, of balls of at most CROWD points.
+    `monomials`, `columns`, their squares and `bends` serve points beside it, of balls of fewer than ROOMY points for each unknown.
     """
 
     origin: np.ndarray
@@ -61,6 +68,7 @@ class Fits(NamedTuple):
 
     monomials: np.ndarray
     columns: np.ndarray
+    squares_of_columns: np.ndarray
     bends: np.ndarray
 
 
@@ -71,21 +79,22 @@ def fits(n_shells):
     return Fits(
         np.zeros(2),
         np.eye(p, 6),
-        np.zeros((n_shells, WIDTH, WIDTH)),
-        np.zeros((n_shells, MAX_ORDER + 1, MAX_ORDER + 1)),
-        np.zeros((n_shells, AT_ONCE, WIDTH)),
+        np.zeros((n_shells, WIDTH + 1, MOMENTS)),
+        np.zeros((n_shells, MAX_ORDER + 2, OFFSETS)),
+        np.zeros((n_shells, AT_ONCE, MOMENTS)),
         np.zeros((n_shells, AT_ONCE, 2)),
         np.zeros(n_shells),
         np.zeros(n_shells),
         np.zeros((WIDTH, WIDTH)),
         np.zeros((MAX_ORDER + 1, MAX_ORDER + 1)),
-        np.zeros((p, p + 7)),
+        np.zeros((ROWS, STRIDE)),
         np.zeros((MAX_ORDER + 1, 6)),
         np.zeros((MAX_ORDER + 1, 6)),
         np.zeros(MAX_ORDER + 1),
-        np.ones((TERMS[MAX_ORDER - 2], CROWD)),
-        np.zeros((p, 3 * CROWD)),
-        np.zeros(CROWD),
+        np.ones((TERMS[MAX_ORDER - 2], PLACES)),
+        np.zeros((ROWS, COLUMNS)),
+        np.zeros(COLUMNS),
+        np.zeros(PLACES),
     )
 
 
@@ -115,41 +124,45 @@ def place_origin(points, n, reach, work):
 
 
 @inlined
-def add_products(first, powers, factors, order, sums):
-    """Add to sums[b, a] the products first v^b u^a of AT_ONCE points with powers u^a and factors v."""
-    p0, p1, p2, p3 = powers[0], powers[1], powers[2], powers[3]
+def add_products(first, powers, factors, order, sums, stride):
+    """Add to sums[b, a] the products first v^b u^a of AT_ONCE points with powers u^a and factors v, two rows at a time.
+
+    Powers and sums are flat, the rows of the latter `stride` apart; what is beyond a + b = order means nothing.
+    """
     y0, y1, y2, y3 = first
-    for b in range(order + 1):
-        row = sums[b]
-        for a in range(order + 1 - b):
-            row[a] += (y0 * p0[a] + y1 * p1[a]) + (y2 * p2[a] + y3 * p3[a])
-        y0, y1, y2, y3 = y0 * factors[0, 0], y1 * factors[1, 0], y2 * factors[2, 0], y3 * factors[3, 0]
+    for b in range(0, order + 1, 2):
+        z0, z1, z2, z3 = y0 * factors[0, 0], y1 * factors[1, 0], y2 * factors[2, 0], y3 * factors[3, 0]
+        rows = sums[b * stride :]
+        for a in range((order - b + LANES) // LANES * LANES):
+            x0, x1, x2, x3 = powers[a], powers[MOMENTS + a], powers[2 * MOMENTS + a], powers[3 * MOMENTS + a]
+            rows[a] += (y0 * x0 + y1 * x1) + (y2 * x2 + y3 * x3)
+            rows[stride + a] += (z0 * x0 + z1 * x1) + (z2 * x2 + z3 * x3)
+        y0, y1, y2, y3 = z0 * factors[0, 0], z1 * factors[1, 0], z2 * factors[2, 0], z3 * factors[3, 0]
 
 
 @inlined
-def add_points(shell, order, work):
-    """Add the points that wait to the moments of a shell."""
-    powers, places = work.powers[shell], work.places[shell]
-    add_products((1.0, 1.0, 1.0, 1.0), powers, places, 2 * order, work.moments[shell])
+def add_points(powers, places, order, moments, offsets):
+    """Add the points that wait to the moments and offsets of a shell."""
+    add_products((1.0, 1.0, 1.0, 1.0), powers, places, 2 * order, moments, MOMENTS)
     w = (places[0, 1], places[1, 1], places[2, 1], places[3, 1])
-    add_products(w, powers, places, order, work.offsets[shell])
+    add_products(w, powers, places, order, offsets, OFFSETS)
 
 
 @inner
-def add_square(terms, n, sums):
-    """Add the first n rows and columns; as a sum of slices this compiles code for messages about their shapes."""
-    for b in range(n):
-        for a in range(n):
-            sums[b, a] += terms[b, a]
+def add_all(terms, sums):
+    """Add one flat array to another; as a sum of arrays this compiles code for messages about their shapes."""
+    for i in range(len(sums)):
+        sums[i] += terms[i]
 
 
 @inner
 def add_moments(points, n, reaches, order, work):
     """Write the moments and offsets of each ball, the number of its points and the sum of w^2."""
     n_shells, top = len(reaches), 2 * order + 1
-    moments, offsets, counts, squares = work.moments, work.offsets, work.counts, work.squares
-    moments[:n_shells, :top, :top] = 0.0
-    offsets[:n_shells, : order + 1, : order + 1] = 0.0
+    counts, squares, places = work.counts, work.squares, work.places
+    moments, offsets = work.moments.reshape(len(counts), -1), work.offsets.reshape(len(counts), -1)
+    powers = work.powers.reshape(len(counts), -1)
+    moments[:n_shells], offsets[:n_shells] = 0.0, 0.0
     counts[:n_shells], squares[:n_shells] = 0.0, 0.0
     for i in range(n):
         u, v, w, q = points[0, i] - work.origin[0], points[1, i] - work.origin[1], points[2, i], points[3, i]
@@ -161,23 +174,23 @@ def add_moments(points, n, reaches, order, work):
         place = int(counts[shell]) % AT_ONCE
         counts[shell] += 1.0
         squares[shell] += w * w
-        powers, x = work.powers[shell, place], 1.0
-        for a in range(top):
-            powers[a] = x
+        x = 1.0
+        for a in range(place * MOMENTS, place * MOMENTS + top):
+            powers[shell, a] = x
             x *= u
-        work.places[shell, place, 0], work.places[shell, place, 1] = v, w
+        places[shell, place, 0], places[shell, place, 1] = v, w
         if place == AT_ONCE - 1:
-            add_points(shell, order, work)
+            add_points(powers[shell], places[shell], order, moments[shell], offsets[shell])
     for shell in range(n_shells):
         last = int(counts[shell]) % AT_ONCE
         if last > 0:
-            work.powers[shell, last:] = 0.0
-            add_points(shell, order, work)
+            powers[shell, last * MOMENTS :] = 0.0
+            add_points(powers[shell], places[shell], order, moments[shell], offsets[shell])
         if shell > 0:
             counts[shell] += counts[shell - 1]
             squares[shell] += squares[shell - 1]
-            add_square(moments[shell - 1], top, moments[shell])
-            add_square(offsets[shell - 1], order + 1, offsets[shell])
+            add_all(moments[shell - 1], moments[shell])
+            add_all(offsets[shell - 1], offsets[shell])
 
 
 @inner
@@ -210,18 +223,34 @@ def write_equation(i, order, work):
 
 
 @inlined
-def subtract_earlier(k, first, end, factor, rows):
-    """Subtract from columns of row k what the earlier rows, by column k of the factor, explain."""
-    row, n = rows[k, first:end], end - first  # slices: loops from 0 on become vector code
-    for m in range(0, k - AT_ONCE + 1, AT_ONCE):
-        a, b, c, d = rows[m, first:end], rows[m + 1, first:end], rows[m + 2, first:end], rows[m + 3, first:end]
-        fa, fb, fc, fd = factor[m, k], factor[m + 1, k], factor[m + 2, k], factor[m + 3, k]
+def subtract_earlier(k, first, n, factor, rows, stride):
+    """Subtract from n columns of the rows k..k + 3 what the rows before k, by the columns of the factor, explain.
+
+    Rows are `stride` apart in one flat array: then vector code needs to make sure once only that they do not overlap.
+    """
+    own = rows[k * stride + first :]
+    for m in range(0, k, AT_ONCE):
+        a0, a1, a2, a3 = factor[m, k], factor[m + 1, k], factor[m + 2, k], factor[m + 3, k]
+        b0, b1, b2, b3 = factor[m, k + 1], factor[m + 1, k + 1], factor[m + 2, k + 1], factor[m + 3, k + 1]
+        c0, c1, c2, c3 = factor[m, k + 2], factor[m + 1, k + 2], factor[m + 2, k + 2], factor[m + 3, k + 2]
+        d0, d1, d2, d3 = factor[m, k + 3], factor[m + 1, k + 3], factor[m + 2, k + 3], factor[m + 3, k + 3]
+        earlier = rows[m * stride + first :]
         for j in range(n):
-            row[j] -= (fa * a[j] + fb * b[j]) + (fc * c[j] + fd * d[j])
+            w, x, y, z = earlier[j], earlier[stride + j], earlier[2 * stride + j], earlier[3 * stride + j]
+            own[j] -= (a0 * w + a1 * x) + (a2 * y + a3 * z)
+            own[stride + j] -= (b0 * w + b1 * x) + (b2 * y + b3 * z)
+            own[2 * stride + j] -= (c0 * w + c1 * x) + (c2 * y + c3 * z)
+            own[3 * stride + j] -= (d0 * w + d1 * x) + (d2 * y + d3 * z)
+
+
+@inlined
+def subtract_beside(k, first, n, factor, rows, stride):
+    """Subtract from n columns of row k what the rows before it among its four explain."""
+    own = rows[k * stride + first :]
     for m in range(k // AT_ONCE * AT_ONCE, k):
-        a, fa = rows[m, first:end], factor[m, k]
+        a, earlier = factor[m, k], rows[m * stride + first :]
         for j in range(n):
-            row[j] -= fa * a[j]
+            own[j] -= a * earlier[j]
 
 
 @inner
@@ -234,19 +263,23 @@ def fit_orders(shell, reach, order, work):
     """
     sort_by_degree(work.moments[shell], reach, 2 * order, work.sums)
     sort_by_degree(work.offsets[shell], reach, order, work.offset_sums)
-    factor, p = work.factor, TERMS[order]
+    factor, p, flat = work.factor, TERMS[order], work.factor.ravel()
     c0 = c1 = c2 = c3 = c4 = c5 = v33 = v34 = v35 = v44 = v45 = v55 = 0.0
     left = work.squares[shell]
     degree = 0
     for k in range(p):
+        first = k // LANES * LANES
+        n = (p + 7 - first + LANES - 1) // LANES * LANES
+        if k % AT_ONCE == 0:
+            for i in range(k, min(k + AT_ONCE, p)):
+                write_equation(i, order, work)
+            subtract_earlier(k, first, n, factor, flat, STRIDE)
+        subtract_beside(k, first, n, factor, flat, STRIDE)
         row = factor[k]
-        write_equation(k, order, work)
-        norm = row[k]
-        subtract_earlier(k, k, p + 7, factor, factor)
-        if not row[k] > PIVOT * norm:
+        if not row[k] > PIVOT * work.sums[2 * DEGREES[k], 2 * V_POWERS[k]]:
             return degree - 1
-        inverse, rest = 1.0 / math.sqrt(row[k]), factor[k, k : p + 7]
-        for j in range(len(rest)):
+        inverse, rest = 1.0 / math.sqrt(row[k]), flat[k * STRIDE + first :]
+        for j in range(n):
             rest[j] *= inverse
         y, z3, z4, z5 = row[p + 6], row[p + 3], row[p + 4], row[p + 5]
         c0, c1, c2, c3 = c0 + row[p] * y, c1 + row[p + 1] * y, c2 + row[p + 2] * y, c3 + z3 * y
@@ -273,8 +306,7 @@ def coefficients(order, top, work, out):
     p, n, factor = TERMS[top], TERMS[order], work.factor
     for i in range(n):
         out[i] = factor[i, p + 6]
-    for i in range(n - 1, -1, -1):
-        total = out[i]
-        for k in range(i + 1, n):
-            total -= factor[i, k] * out[k]
-        out[i] = total * factor[i, i]
+    for k in range(n - 1, -1, -1):
+        out[k] *= factor[k, k]
+        for i in range(k):
+            out[i] -= factor[i, k] * out[k]
