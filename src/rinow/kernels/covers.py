@@ -34,26 +34,29 @@ def shape_keys(vertices, offsets, neighbours, out):
 
 
 @inner
-def disc(v, radius, epoch, sheet, marks, members):
+def disc(v, radius, epoch, vertices, offsets, neighbours, marks, members):
     """Write the vertices within a distance of v, reached over such vertices, to members (n + 1,); how many.
 
-    Which neighbours are new is as good as random: no branch depends on it.
+    Which neighbours are new, and which of them near, is as good as random: no branch depends on it.
     """
-    vertices, offsets, neighbours = sheet.vertices, sheet.offsets, sheet.neighbours
     members[0] = v
     marks[v] = epoch
-    far, done, n = radius * radius, 0, 1
-    while done < n:
-        p = members[done]
-        for i in range(offsets[p], offsets[p + 1]):
-            q = neighbours[i]
-            mark = marks[q]
-            is_new = (mark != epoch) & (stencils.squared_distance(vertices, v, q) < far)
-            marks[q] = epoch if is_new else mark
-            members[n] = q
-            n += is_new
-        done += 1
-    return n
+    far, first, last = radius * radius, 0, 1
+    while first < last:
+        n = last
+        for m in range(first, last):
+            for i in range(offsets[members[m]], offsets[members[m] + 1]):
+                q = neighbours[i]
+                members[n] = q
+                n += marks[q] != epoch
+                marks[q] = epoch
+        first, kept = last, last
+        for m in range(first, n):
+            q = members[m]
+            members[kept] = q
+            kept += stencils.squared_distance(vertices, v, q) < far
+        last = kept
+    return last
 
 
 @kernel
@@ -61,12 +64,12 @@ def cover(candidates, radii, sheet, centres):
     """Write each candidate that lies in the disc of no earlier one; how many."""
     n = len(sheet.vertices)
     marks, members, is_covered = np.zeros(n, np.int32), np.empty(n + 1, np.int32), np.zeros(n, np.bool_)
-    count = 0
+    surface, count = (sheet.vertices, sheet.offsets, sheet.neighbours), 0
     for v in candidates:
         if not is_covered[v]:
             centres[count] = v
             count += 1
-            for i in range(disc(v, radii[v], count, sheet, marks, members)):
+            for i in range(disc(v, radii[v], count, *surface, marks, members)):
                 is_covered[members[i]] = True
     return count
 
@@ -80,8 +83,9 @@ def link(places, sources, radii, starts, n_blocks, sheet, counts, links):
     n, size = len(sources), len(sheet.vertices)
     for block in prange(n_blocks):
         marks, members = np.zeros(size, np.int32), np.empty(size + 1, np.int32)
+        surface = (sheet.vertices, sheet.offsets, sheet.neighbours)
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            m, k, room = disc(sources[i], radii[i], i + 1, sheet, marks, members), 0, starts[i + 1] - starts[i]
+            m, k, room = disc(sources[i], radii[i], i + 1, *surface, marks, members), 0, starts[i + 1] - starts[i]
             for j in range(m):
                 target = places[members[j]]
                 if target >= 0:
@@ -124,11 +128,13 @@ def sum_logs(rows, logs, shifts, totals, counts):
     totals[:], counts[:] = 0.0, 0.0
     n = len(totals)
     for i in range(len(rows)):
-        log, up = logs[rows[i]], shifts[i]
-        for c in range(max(up, 0), min(n + up, n)):
-            is_known = not math.isnan(log[c - up])
-            totals[c] += log[c - up] if is_known else 0.0
-            counts[c] += 1.0 if is_known else 0.0
+        up = max(min(shifts[i], n), -n)
+        below, above = max(up, 0), min(n + up, n)
+        own, total, count = logs[rows[i], below - up : above - up], totals[below:above], counts[below:above]
+        for c in range(above - below):
+            is_known = not math.isnan(own[c])
+            total[c] += own[c] if is_known else 0.0
+            count[c] += 1.0 if is_known else 0.0
 
 
 @parallel_kernel

@@ -47,7 +47,7 @@ class Fits(NamedTuple):
     moments[ball, b, a] and offsets[ball, b, a] are the sums of u^a v^b and of w u^a v^b, `sums` and `offset_sums` those
     of one ball by degree, u and v being counted from `origin`.  Of the points still to be added `powers` has u^a and
     `places` has v and w.  targets[i] are value and derivatives f1, f2, f11/2, f12, f22/2 of a monomial at the centre.
-    `monomials`, `columns`, their squares and `bends` serve points beside it, of balls of fewer than ROOMY points for each unknown.
+    `monomials`, `columns`, their squares and `bends` serve points beside it, of balls of at most PLACES points.
     """
 
     origin: np.ndarray

@@ -29,19 +29,20 @@ def average_rows(values, spacing, power, rows, low, high, links, starts, out):
     An entry is in the unit spacing^-power of its own centre, and so is the mean.
     """
     for i in prange(len(low)):
-        width = values.shape[1]
+        width, near = values.shape[1], links[starts[i] : starts[i + 1]]
+        totals, counts = np.empty(width), np.empty(width)
         for k in range(high[i] - low[i] + 1):
+            totals[:], counts[:] = 0.0, 0.0
+            for n in near:
+                j = low[i] + k - low[n]
+                if 0 <= j <= high[n] - low[n]:
+                    unit, row = (spacing[i] / spacing[n]) ** power, values[rows[n] + j]
+                    for c in range(width):
+                        is_known = not math.isnan(row[c])
+                        totals[c] += row[c] * unit if is_known else 0.0
+                        counts[c] += 1.0 if is_known else 0.0
             for c in range(width):
-                total, count = 0.0, 0
-                for m in range(starts[i], starts[i + 1]):
-                    n = links[m]
-                    j = low[i] + k - low[n]
-                    if 0 <= j <= high[n] - low[n]:
-                        x = values[rows[n] + j, c]
-                        if not math.isnan(x):
-                            total += x * (spacing[i] / spacing[n]) ** power
-                            count += 1
-                out[rows[i] + k, c] = total / count if count else np.nan
+                out[rows[i] + k, c] = totals[c] / counts[c] if counts[c] > 0.0 else np.nan
 
 
 @inner
