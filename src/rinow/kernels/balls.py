@@ -58,20 +58,19 @@ def ball(n_vertices, most):
 
 
 @inner
-def find_unseen(members, first, last, epoch, sheet, work):
+def find_unseen(members, first, last, epoch, offsets, neighbours, marks, candidates):
     """Write the unseen neighbours of some members to the candidates; how many.
 
     Whether a neighbour was seen is as good as random: no branch here depends on it.
     """
-    marks, candidates = work.marks, work.candidates
     most, count = len(candidates) - 1, 0
     for i in range(first, last):
         p = members[i]
-        begin, end = sheet.offsets[p], sheet.offsets[p + 1]
+        begin, end = offsets[p], offsets[p + 1]
         if i > 0 and end - begin > HUB:
             continue
         for k in range(begin, end):
-            q = sheet.neighbours[k]
+            q = neighbours[k]
             mark = marks[q]
             is_new = (mark != epoch) & (count < most)
             candidates[count] = q
@@ -81,9 +80,8 @@ def find_unseen(members, first, last, epoch, sheet, work):
 
 
 @inner
-def keep_near(count, v, spacing, reach, sheet, work):
+def keep_near(count, v, spacing, reach, vertices, normals, candidates, raw):
     """Keep the candidates not farther than `reach` from v, and write positions and normals; how many."""
-    vertices, normals, raw, candidates = sheet.vertices, sheet.normals, work.raw, work.candidates
     px, py, pz = vertices[v, 0], vertices[v, 1], vertices[v, 2]
     scale, far = 1.0 / spacing, reach * reach * spacing * spacing
     kept = 0
@@ -98,9 +96,8 @@ def keep_near(count, v, spacing, reach, sheet, work):
 
 
 @inner
-def judge(count, frame, spacing, is_oriented, work):
+def judge(count, frame, spacing, is_oriented, raw):
     """Replace the candidates' positions by torus coordinates; the squared distance, or inf for another sheet."""
-    raw = work.raw
     nx, ny, nz = frame[0], frame[1], frame[2]
     ax, ay, az = frame[3], frame[4], frame[5]
     bx, by, bz = frame[6], frame[7], frame[8]
@@ -126,19 +123,19 @@ def grow(v, frame, reach, epoch, sheet, work):
     The set does not depend on the order of vertices: a vertex belongs to it if its own coordinates admit it and a path
     of admitted vertices leads to it.
     """
-    members, points, raw, spacing = work.members, work.points, work.raw, sheet.spacing[v]
+    members, points, raw, candidates, spacing = work.members, work.points, work.raw, work.candidates, sheet.spacing[v]
     members[0] = v
     points[:, 0] = 0.0
     work.marks[v] = epoch
     first, last = 0, 1
     while first < last:
-        count = find_unseen(members, first, last, epoch, sheet, work)
-        count = keep_near(count, v, spacing, reach, sheet, work)
-        judge(count, frame, spacing, sheet.is_oriented, work)
+        count = find_unseen(members, first, last, epoch, sheet.offsets, sheet.neighbours, work.marks, candidates)
+        count = keep_near(count, v, spacing, reach, sheet.vertices, sheet.normals, candidates, raw)
+        judge(count, frame, spacing, sheet.is_oriented, raw)
         n = last
         for i in range(count):
             if raw[3, i] < reach * reach and n < len(members):
-                members[n] = work.candidates[i]
+                members[n] = candidates[i]
                 points[0, n], points[1, n], points[2, n], points[3, n] = raw[0, i], raw[1, i], raw[2, i], raw[3, i]
                 n += 1
         first, last = last, n
