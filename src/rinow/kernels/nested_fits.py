@@ -22,6 +22,8 @@ TERMS = (1, 3, 6, 10, 15, 21, 28, 36, 45)
 """Number of monomials of degree at most d."""
 V_POWERS = np.array([b for d in range(MAX_ORDER + 1) for b in range(d + 1)])
 DEGREES = np.array([d for d in range(MAX_ORDER + 1) for b in range(d + 1)])
+SUMS = DEGREES * WIDTH + V_POWERS
+"""Place of the sum of a monomial by degree; that of a product of two is the sum of their places."""
 PIVOT = 2e-6
 """A monomial depends on earlier ones when this share of its squared norm is left.  A smaller share would admit fits
 that nearly interpolate: precise and wrong."""
@@ -85,8 +87,8 @@ def fits(n_shells):
         np.zeros((n_shells, AT_ONCE, 2)),
         np.zeros(n_shells),
         np.zeros(n_shells),
-        np.zeros((WIDTH, WIDTH)),
-        np.zeros((MAX_ORDER + 1, MAX_ORDER + 1)),
+        np.zeros(WIDTH * WIDTH),
+        np.zeros(WIDTH * WIDTH),
         np.zeros((ROWS, STRIDE)),
         np.zeros((MAX_ORDER + 1, 6)),
         np.zeros((MAX_ORDER + 1, 6)),
@@ -203,23 +205,23 @@ def highest_order(count, order):
 
 @inlined
 def sort_by_degree(moments, reach, last, sums):
-    """Write the moments of degree up to `last`, in coordinates over `reach`, to sums[degree, b]."""
+    """Write the moments of degree up to `last`, in coordinates over `reach`, in the order of degree and b."""
     scale = 1.0
     for d in range(last + 1):
         for b in range(d + 1):
-            sums[d, b] = moments[b, d - b] * scale
+            sums[d * WIDTH + b] = moments[b, d - b] * scale
         scale /= reach
 
 
 @inlined
 def write_equation(i, order, work):
     """Write a row of the normal equations; the columns after the monomials are the targets and the data."""
-    factor, p, v, degree = work.factor, TERMS[order], V_POWERS[i], DEGREES[i]
+    row, p, targets, own = work.factor[i], TERMS[order], work.targets[i], work.sums[SUMS[i] :]
     for j in range(i, p):
-        factor[i, j] = work.sums[degree + DEGREES[j], v + V_POWERS[j]]
+        row[j] = own[SUMS[j]]
     for k in range(6):
-        factor[i, p + k] = work.targets[i, k]
-    factor[i, p + 6] = work.offset_sums[degree, v]
+        row[p + k] = targets[k]
+    row[p + 6] = work.offset_sums[SUMS[i]]
 
 
 @inlined
@@ -276,7 +278,7 @@ def fit_orders(shell, reach, order, work):
             subtract_earlier(k, first, n, factor, flat, STRIDE)
         subtract_beside(k, first, n, factor, flat, STRIDE)
         row = factor[k]
-        if not row[k] > PIVOT * work.sums[2 * DEGREES[k], 2 * V_POWERS[k]]:
+        if not row[k] > PIVOT * work.sums[2 * SUMS[k]]:
             return degree - 1
         inverse, rest = 1.0 / math.sqrt(row[k]), flat[k * STRIDE + first :]
         for j in range(n):
