@@ -69,13 +69,10 @@ def find_unseen(members, first, last, epoch, offsets, neighbours, marks, candida
         begin, end = offsets[p], offsets[p + 1]
         if i > 0 and end - begin > HUB:
             continue
-        for k in range(begin, end):
-            q = neighbours[k]
-            mark = marks[q]
-            is_new = (mark != epoch) & (count < most)
+        for q in neighbours[begin : min(end, begin + most - count)]:
             candidates[count] = q
-            marks[q] = epoch if is_new else mark
-            count += is_new
+            count += marks[q] != epoch
+            marks[q] = epoch
     return count
 
 
