@@ -17,7 +17,7 @@ TITLE = "spot (Keenan Crane, CC0)"
 
 def demo() -> None:
     """Compute the curvature of the shipped mesh `spot`; write a PLY, a PNG and a page into the current folder."""
-    with working("computing; the first run compiles before, for up to a minute"):
+    with working("computing"):
         surface = demo_mesh()
         study = study_surface(surface)
     with study.timed("writing"), working("drawing"):

@@ -1,7 +1,7 @@
 """Compiled kernels: numbers and flat arrays only, no objects, no errors, no printing.
 
 Policy
-    `_jit` compiles, `_parallel` shares loops out among threads.
+    `_jit` compiles, `_notice` says so on a terminal, `_parallel` shares loops out among threads.
 Meshes
     `adjacency`, `triangles`, `fans`, `stencils`, `cuts`; `edge_noise`, `creases` and `crease_lines`, `cone_points`,
     `facet_stars`; `records` of files.

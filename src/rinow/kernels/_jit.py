@@ -9,6 +9,7 @@ import warnings
 import numba
 from numba import prange
 
+from rinow.kernels import _notice
 from rinow.kernels._parallel import Parallel
 
 __all__ = ["inlined", "inner", "kernel", "parallel_kernel", "prange"]
@@ -27,6 +28,8 @@ def can_keep(function):
         return False
     return True
 
+
+_notice.watch()
 
 POLICY = {"cache": can_keep(can_keep), "error_model": "numpy", "no_cfunc_wrapper": True}
 
