@@ -129,4 +129,5 @@ def _sorted(points: Floats, triangles: Indices) -> Surface:
     box_trees.bound_boxes(corners, depth, boxes)
     corner_points = np.ascontiguousarray(triangles[order])
     used, first = np.unique(corner_points, return_index=True)
-    return Surface(points, used[np.argsort(first)], corner_points, BoxTree(corners, order, boxes, depth, np.zeros(3), np.empty((0, box_trees.VIEW))))
+    tree = BoxTree(corners, order, boxes, depth, np.zeros(3), np.empty((0, box_trees.VIEW)))
+    return Surface(points, used[np.argsort(first)], corner_points, tree)
