@@ -35,11 +35,16 @@ def fibonacci_sphere(n: int, radius: float, turn: float) -> Mesh:
 
 
 def pairs(n_vertices: int) -> dict[str, tuple[Mesh, Mesh]]:
-    """Pairs that nearly coincide, run parallel, cross, are far apart, or are the same."""
+    """Pairs that nearly coincide, run parallel, cross, are far apart or the same, or lie deep inside one another."""
     torus, other = jittered_torus(n_vertices), jittered_torus(n_vertices, seed=21)
-    sphere = fibonacci_sphere(n_vertices, 1.0, 0.0)
+    sphere, other_sphere = (fibonacci_sphere(n_vertices, 1.0, turn) for turn in (0.0, 1.0))
     h = np.sqrt(4 * np.pi / n_vertices)
     noise = np.random.default_rng(20).normal(size=torus[0].shape)
+
+    def inside(size: float) -> Mesh:
+        """A sphere near the centre of the other one, of which all points are nearly as far from it."""
+        return size * (other_sphere[0] + (0.3, -0.1, 0.2)), other_sphere[1]
+
     return {
         "two meshes of one torus": (torus, other),
         "torus and noisy torus": (torus, (torus[0] + 0.2 * h * noise, torus[1])),
@@ -49,6 +54,7 @@ def pairs(n_vertices: int) -> dict[str, tuple[Mesh, Mesh]]:
         "sphere and torus": (sphere, torus),
         "torus and shifted torus": (torus, (torus[0] + 0.05, torus[1])),
         "torus and itself": (torus, torus),
+        **{f"sphere, {size:g} of it inside": (inside(size), sphere) for size in (0.1, 1e-2, 1e-4, 1e-6)},
     }
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from typing import Any
 
 __all__ = [
@@ -12,6 +14,7 @@ __all__ = [
     "MissingDependencyError",
     "NotAMetricError",
     "RinowError",
+    "naming",
 ]
 
 
@@ -49,3 +52,13 @@ class ConvergenceError(RinowError):
 
 class MissingDependencyError(RinowError, ImportError):
     """An optional package is needed; the message names the extra that brings it."""
+
+
+@contextmanager
+def naming(argument: str) -> Generator[None]:
+    """Put the name of an argument before the message of an error about its value."""
+    try:
+        yield
+    except InvalidInputError as error:
+        error.args = (f"{argument}: {error}",)
+        raise

@@ -14,10 +14,17 @@ from scipy.spatial.distance import pdist, squareform
 
 from rinow import tolerances
 from rinow._arrays import as_distance_matrix, as_floats, as_indices, as_points, read_only
-from rinow.errors import InvalidInputError, NotAMetricError
+from rinow.errors import InvalidInputError, NotAMetricError, naming
 from rinow.kernels import metrics
 
-__all__ = ["MetricSpace", "as_metric_space", "graph_edge_lengths", "trusted_metric_space"]
+__all__ = [
+    "MetricSpace",
+    "as_metric_space",
+    "both_distances",
+    "finite_distances",
+    "graph_edge_lengths",
+    "trusted_metric_space",
+]
 
 Floats = NDArray[np.float64]
 
@@ -215,6 +222,32 @@ def as_metric_space(space: Any) -> MetricSpace:
             "(geodesic_space makes one of a mesh, MetricSpace.from_graph of a graph)."
         )
     return MetricSpace(space)
+
+
+def finite_distances(space: Any) -> Floats:
+    """The distance matrix of a space in one part.
+
+    Raises
+    ------
+    InvalidInputError
+        If `space` is no space.
+    NotAMetricError
+        If the matrix is not a metric, or a distance is infinite.
+    """
+    D = as_metric_space(space).distances
+    apart = np.argwhere(np.isinf(D))
+    if len(apart):
+        i, j = (int(x) for x in apart[0])
+        raise NotAMetricError(f"distances[{i}, {j}] is infinite; take one component.", (i, j))
+    return D
+
+
+def both_distances(X: Any, Y: Any) -> tuple[Floats, Floats]:
+    """`finite_distances` of two spaces; an error says which of them it is about."""
+    with naming("X"):
+        DX = finite_distances(X)
+    with naming("Y"):
+        return DX, finite_distances(Y)
 
 
 def _check_triangle_inequality(D: Floats, rtol: float) -> None:

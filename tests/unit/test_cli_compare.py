@@ -202,7 +202,7 @@ def test_a_matrix_that_is_no_metric_is_named(folder, capfd):
     (folder / "bent.csv").write_text("0,1,2.1\n1,0,1\n2.1,1,0\n")
     code, out, err = run(capfd, "compare", "d.npz", "bent.csv", "--distances")
     assert (code, out) == (1, "")
-    assert err.startswith("rinow: bent.csv: distances[0, 2] = 2.1")
+    assert err.startswith("rinow: B: bent.csv: distances[0, 2] = 2.1")
     assert err.endswith("raise rtol.\n")
     code, out, _ = run(capfd, "compare", "d.npz", "bent.csv", "--distances", "--rtol", "0.1", "--json")
     assert code == 0
@@ -210,8 +210,37 @@ def test_a_matrix_that_is_no_metric_is_named(folder, capfd):
 
 
 def test_meshes_of_unequal_size_need_no_distances(folder, capfd, monkeypatch):
-    monkeypatch.setattr("rinow.study.comparison.geodesic_space", None)
+    monkeypatch.setattr("rinow.study.comparison.geodesics_within", None)
     rinow.write_mesh(folder / "c.off", (np.eye(3), [[0, 1, 2]]))
     code, out, _ = run(capfd, "compare", "a.ply", "c.off", "--metric", "lipschitz", "--json")
     assert code == 0
     assert json.loads(out)["lower_bound_by"] == "size"
+
+
+@pytest.mark.parametrize("metric", ["gromov-hausdorff", "lipschitz"])
+def test_a_mesh_in_two_parts_is_named(folder, capfd, metric):
+    c = cube()
+    both = np.concatenate([c.vertices, c.vertices + 3]), np.concatenate([c.faces, c.faces + 8])
+    rinow.write_mesh(folder / "two.ply", both)
+    for pair, name in ((("two.ply", "a.ply"), "A"), (("a.ply", "two.ply"), "B")):
+        code, out, err = run(capfd, "compare", *pair, "--metric", metric)
+        assert (code, out) == (1, "")
+        assert err == f"rinow: {name}: two.ply: mesh has no path from vertex 0 to vertex 8; take one component.\n"
+
+
+def test_a_vertex_without_a_face_has_no_geodesic_distance(folder, capfd):
+    c = cube()
+    rinow.write_mesh(folder / "loose.ply", (np.concatenate([c.vertices, [[5, 5, 5]]]), c.faces))
+    code, out, err = run(capfd, "compare", "loose.ply", "loose.ply", "--metric", "lipschitz")
+    assert (code, out) == (1, "")
+    assert err.startswith("rinow: A: loose.ply: mesh has no face at vertex 8")
+    assert main(["compare", "loose.ply", "loose.ply", "--metric", "gromov-hausdorff"]) == 0
+
+
+def test_geodesic_distances_that_take_too_long_are_refused(folder, capfd):
+    s = icosphere(3)
+    rinow.write_mesh(folder / "s.ply", (s.vertices, s.faces))
+    code, out, err = run(capfd, "compare", "s.ply", "s.ply", "--metric", "lipschitz", "--time-limit", "0")
+    assert (code, out) == (1, "")
+    assert err.startswith("rinow: the geodesic distances of 642 vertices take about")
+    assert err.endswith("or simplify the meshes.\n")

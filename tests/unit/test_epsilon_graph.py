@@ -65,7 +65,7 @@ BAD = [
     (lambda: rinow.epsilon_graph([[0.0]], 1.0, indices=[]), "indices has shape (0,)"),
     (
         lambda: rinow.epsilon_graph(rinow.intrinsic_metric([[0, 1], [1, 0]], 0.5, infinite=True), 1.0),
-        "space has infinite distances; take one component.",
+        "distances[0, 1] is infinite; take one component.",
     ),
 ]
 

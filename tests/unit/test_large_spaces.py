@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.distance import pdist, squareform
 
 from clocks import Looks
-from rinow import MetricSpace, TriangleMesh, distortion, gromov_hausdorff
+from rinow import MetricSpace, TriangleMesh, distance_matrix, distortion, gromov_hausdorff
 from rinow.comparison import large, surfaces
 from rinow.comparison.clock import Clock
 from rinow.comparison.gromov_hausdorff import first_interval
@@ -131,9 +131,13 @@ def test_mesh_with_loose_vertices_is_its_used_vertices():
 
 def test_mesh_in_two_parts():
     V, F = grid(3)
-    with pytest.raises(NotAMetricError, match="no path from vertex 0 to vertex 9") as caught:
-        gromov_hausdorff((np.concatenate([V, V + 5]), np.concatenate([F, F + 9])), [[0.0]])
-    assert caught.value.witness == (0, 9)
+    two = np.concatenate([V, V + 5]), np.concatenate([F, F + 9])
+    for name, pair in (("X", (two, [[0.0]])), ("Y", ([[0.0]], two))):
+        with pytest.raises(NotAMetricError, match=f"^{name}: mesh has no path from vertex 0 to vertex 9") as caught:
+            gromov_hausdorff(*pair)
+        assert caught.value.witness == (0, 9)
+    with pytest.raises(NotAMetricError, match=r"^spaces\[1\]: mesh has no path"):
+        distance_matrix([(V, F), two])
 
 
 def test_mesh_without_a_face_that_takes_part():

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 from scipy.spatial.distance import pdist, squareform
 
 from naive import correspondences as naive
-from rinow import dilatation, lipschitz_distance
+from rinow import MetricSpace, dilatation, gromov_hausdorff, lipschitz_distance, uniform_distance
 from rinow.comparison.bounds import matching_bound
 from rinow.errors import InvalidInputError, NotAMetricError
 
@@ -137,3 +138,22 @@ def test_bad_input():
         lipschitz_distance([[0, -1], [-1, 0]], [[0, 1], [1, 0]])
     with pytest.raises(InvalidInputError, match="time_limit = -2"):
         lipschitz_distance(LINE, LINE, time_limit=-2)
+
+
+@pytest.mark.parametrize("compare", [lipschitz_distance, gromov_hausdorff, uniform_distance])
+def test_errors_say_which_space_they_are_about(compare):
+    apart = MetricSpace.from_graph(csr_array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]), infinite=True)
+    for name, pair in (("X", (apart, LINE)), ("Y", (LINE, apart))):
+        with pytest.raises(NotAMetricError, match=rf"^{name}: distances\[0, 2\] is infinite") as caught:
+            compare(*pair)
+        assert caught.value.witness == (0, 2)
+    with pytest.raises(NotAMetricError, match=r"^Y: distances\[0, 1\] = -1 is negative"):
+        compare(LINE, [[0, -1], [-1, 0]])
+    with pytest.raises(InvalidInputError, match=r"^X: space is a csr_array; give a MetricSpace"):
+        compare(csr_array(LINE), LINE)
+
+
+def test_no_search_knows_that_eccentricities_differ():
+    X = cloud(np.random.default_rng(15), 30)
+    result = lipschitz_distance(X, 3 * X[::-1, ::-1], time_limit=0)
+    assert (result.lower, result.lower_bound_by) == (math.log(3), "eccentricities")

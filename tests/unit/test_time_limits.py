@@ -6,14 +6,20 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import pdist, squareform
 
+import rinow
 from clocks import Looks
 from rinow.comparison import engine as engine_module
-from rinow.comparison import large_work
+from rinow.comparison import large_work, lipschitz
+from rinow.comparison.bounds import matching_bound
 from rinow.comparison.clock import Clock
-from rinow.comparison.engine import Engine, Search
+from rinow.comparison.engine import BIJECTION, Engine, Search
 from rinow.comparison.large_work import Work
+from rinow.comparison.surfaces import geodesics_within
 from rinow.comparison.symmetry import isometries
+from rinow.errors import InvalidInputError
+from rinow.geodesics import exact
 from rinow.kernels import compatibility, dives
+from shapes import icosphere
 
 pytestmark = pytest.mark.usefixtures("compiled_searches")
 
@@ -89,3 +95,57 @@ def test_isometries_stop_with_the_clock():
     assert 1 <= len(some.images) < 18
     for f in some.images:
         assert (D[np.ix_(f, f)] == D).all()
+
+
+def test_matching_bound_stops_below_the_level_that_it_seeks():
+    levels = np.random.default_rng(3).random((30, 30))
+    whole = matching_bound(levels)
+    bounds = [matching_bound(levels, Looks(looks)) for looks in range(12)]
+    assert bounds[0] == levels.min()
+    assert bounds == sorted(bounds)
+    assert bounds[-1] == whole
+
+
+def test_bijections_of_many_points_are_bounded_but_not_searched(monkeypatch):
+    X, Y = spaces(12, 12)
+    exactly = rinow.lipschitz_distance(X, Y)
+    monkeypatch.setattr(lipschitz, "SEARCHED", 11)
+    monkeypatch.setattr(engine_module, "sorted_rows", None)  # cubic memory
+    result = rinow.lipschitz_distance(X, Y)
+    assert 0.0 < result.lower <= exactly.lower <= exactly.upper <= result.upper
+    f = result.bijection
+    assert result.upper == math.log(max(rinow.dilatation(f, X, Y), rinow.dilatation(np.argsort(f), Y, X)))
+
+
+def test_sets_of_sorted_rows_count_as_memory(monkeypatch):
+    X, Y = spaces(20, 20)
+    engine, possible = Engine(X, Y, BIJECTION), np.eye(20, dtype=bool)
+    assert engine.fits(possible)
+    monkeypatch.setattr(engine_module, "TABLE_BYTES", 4 * 20 * 40 + 2 * 20**3 // 8 - 1)
+    assert not engine.fits(possible)
+
+
+def test_geodesic_distances_stop_at_the_second_look(monkeypatch):
+    """The first sources may have to wait for compiled code, so that they tell nothing about the others."""
+    mesh = icosphere(3)
+    surface = rinow.TriangleMesh(mesh.vertices, mesh.faces)
+    asked, distances = [], exact.ExactGeodesics.distances
+
+    def counted(self, sources, **options):
+        asked.append(len(sources))
+        return distances(self, sources, **options)
+
+    monkeypatch.setattr(exact.ExactGeodesics, "distances", counted)
+    message = r"distances of 642 vertices take about \S+ s, too much for the time limit; allow \d+ s, or simplify"
+    for looks, blocks in ((0, 2), (3, 5)):
+        asked.clear()
+        with pytest.raises(InvalidInputError, match=message):
+            geodesics_within(surface, Looks(looks))
+        assert asked == [64] * blocks
+    whole = geodesics_within(surface, Looks(20))
+    assert (whole.distances == rinow.geodesic_space(surface).distances).all()
+
+
+def test_few_geodesic_distances_need_no_time():
+    mesh = icosphere(1)
+    assert len(geodesics_within(rinow.TriangleMesh(mesh.vertices, mesh.faces), Clock(0.0))) == 42

@@ -10,7 +10,8 @@ from cyclopts import Parameter
 from rinow._version import __version__
 from rinow.cli._terminal import print_counts, print_json, print_notes, working
 from rinow.comparison.hausdorff import HausdorffDistance
-from rinow.errors import FileFormatError, InvalidInputError, NotAMetricError
+from rinow.comparison.surfaces import check_connected
+from rinow.errors import FileFormatError, InvalidInputError, naming
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
 from rinow.io.tables import check_table, read_distances, read_points, write_columns
 from rinow.mesh import TriangleMesh
@@ -56,8 +57,8 @@ def compare(
     tolerance
         Hausdorff distance of surfaces: greatest width of the interval, relative to the diagonal.
     time_limit
-        Other distances: seconds after which to stop with the interval reached.  The Lipschitz distance of meshes needs
-        their geodesic distances before, which may take a minute.
+        Other distances: seconds after which to stop with the interval reached, counted from when the files are read.
+        Lipschitz distance of meshes: where all their geodesic distances would take too long, an error says how long.
     rtol
         Distance matrices: how much the axioms of a metric may be broken, relative to the largest distance.
     verify
@@ -73,9 +74,10 @@ def compare(
     distance: Metric = metric or ("gromov-hausdorff" if distances else "hausdorff")
     _check_outputs(output, (a, b), kind, distance)
     shapes: list[Any] = []
-    for path in (a, b):
+    for name, path in (("A", a), ("B", b)):
         with working(f"reading {path.name}"):
-            shapes.append(_read(path, kind, rtol))
+            with naming(f"{name}: {path}"):
+                shapes.append(_read(path, kind, distance, rtol))
     with working("comparing"):
         study = compare_shapes(
             *shapes,
@@ -97,15 +99,16 @@ def compare(
         _print(record, notes)
 
 
-def _read(path: Path, kind: Kind, rtol: float) -> Any:
-    if kind == "surfaces":
-        return read_mesh(path)
+def _read(path: Path, kind: Kind, metric: Metric, rtol: float) -> Any:
+    """A shape of a kind that has a distance of this kind."""
     if kind == "points":
         return read_points(path)
-    try:
+    if kind == "distances":
         return MetricSpace(read_distances(path), rtol=rtol)
-    except NotAMetricError as error:
-        raise NotAMetricError(f"{path}: {error}", error.witness) from None
+    mesh = read_mesh(path)
+    if metric != "hausdorff":
+        check_connected(mesh, every_vertex=metric == "lipschitz")
+    return mesh
 
 
 def _check_outputs(output: tuple[Path, ...], inputs: tuple[Path, Path], kind: Kind, metric: Metric) -> None:

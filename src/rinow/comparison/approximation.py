@@ -1,4 +1,8 @@
-"""ε-isometries and (ε, δ)-approximations between finite metric spaces."""
+"""ε-isometries and (ε, δ)-approximations between finite metric spaces.
+
+Both questions are answered in one way: a good correspondence of the spaces says yes, a lower bound of their distance
+no, and what is left goes to a clause-learning solver, which may run out of time.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +14,13 @@ from numpy.typing import NDArray
 
 from rinow._arrays import as_number
 from rinow._printing import OneLine
-from rinow.comparison import bounds, steps
+from rinow.comparison import bounds, large, steps
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import MAP, RELATION, Engine, worst_of
 from rinow.comparison.gromov_hausdorff import first_interval
 from rinow.comparison.satisfiability import Satisfiability, solver_installed
 from rinow.errors import InvalidInputError
-from rinow.metric_space import MetricSpace, as_metric_space
+from rinow.metric_space import MetricSpace, both_distances
 
 __all__ = ["Approximation", "EpsilonIsometry", "MetricSpace", "find_approximation", "find_epsilon_isometry"]
 
@@ -32,11 +36,11 @@ class EpsilonIsometry(OneLine):
     Attributes
     ----------
     found : bool or None
-        True with a map, False when there is none, None when the time was over before either was proved.
+        Whether there is one; None when the time was over before either was proved.
     map : (n,) ndarray of int
         Image in Y of each point of X; empty unless `found` is true.
     proof_checked : bool or None
-        Whether the proof that a clause-learning solver gave for a "no" was checked; None if there is none.
+        Whether the proof of a "no" by a clause-learning solver was checked; None where no solver gave it.
     """
 
     found: bool | None
@@ -50,12 +54,10 @@ class Approximation(OneLine):
 
     Attributes
     ----------
-    found : bool or None
-        True with the nets, False when there are none, None when the time was over before either was proved.
+    found, proof_checked : bool or None
+        As of an `EpsilonIsometry`.
     pairs : (k, 2) ndarray of int
         Points of the two nets that correspond; empty unless `found` is true.
-    proof_checked : bool or None
-        Whether the proof that a clause-learning solver gave for a "no" was checked; None if there is none.
     """
 
     found: bool | None
@@ -75,15 +77,14 @@ def find_epsilon_isometry(
     epsilon : float
         At least 0, in the unit of the distances; with 0 the map is an isometry.
     time_limit : float, default 60
-        Seconds after which an undecided search stops.
+        Seconds after which the question is left undecided.
     verify : bool, default False
-        Have the clause-learning solver write down its proof of a "no", and check it: that takes two or three times as
-        long as finding it.  A "no" with a wrong proof is undecided.
+        Check the proof of a "no", as in `gromov_hausdorff`; a wrong one leaves the question undecided.
 
     Returns
     -------
     result : EpsilonIsometry
-        `found` (True, False, or None for undecided), `map` and `proof_checked`.
+        The answer, and a map if it is yes.
 
     Raises
     ------
@@ -101,8 +102,7 @@ def find_epsilon_isometry(
     -----
     A map f with :math:`\mathrm{dis} f \le \varepsilon` whose image is an ε-net.  Such a map gives
     :math:`d_{GH} \le 3\varepsilon/2`, and :math:`d_{GH} < \varepsilon/2` gives such a map (Corollary 2.37 of the paper;
-    its proof prints dil for dis).  So a good correspondence answers yes and a lower bound of the distance no; what is
-    left goes to a clause-learning solver.  The relation is not symmetric in X and Y.
+    its proof prints dil for dis).  The relation is not symmetric in X and Y.
 
     Examples
     --------
@@ -114,7 +114,7 @@ def find_epsilon_isometry(
     """
     clock = Clock.of(time_limit)
     _check_scale(epsilon, "epsilon")
-    DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
+    DX, DY = both_distances(X, Y)
     found, pairs = _by_relation(DX, DY, clock, wanted=epsilon, hopeless=3.0 * epsilon)
     checked = None
     if found is None:
@@ -133,22 +133,17 @@ def find_approximation(
 
     Parameters
     ----------
-    X, Y : MetricSpace or square array_like of float
-        Two finite metric spaces.
+    X, Y, time_limit, verify
+        As in `find_epsilon_isometry`.
     epsilon : float
         Largest distance of a point from the net of its space, at least 0.
     delta : float
         Above 0; distances of corresponding points differ by less than this.
-    time_limit : float, default 60
-        Seconds after which an undecided search stops.
-    verify : bool, default False
-        Have the clause-learning solver write down its proof of a "no", and check it: that takes two or three times as
-        long as finding it.  A "no" with a wrong proof is undecided.
 
     Returns
     -------
     result : Approximation
-        `found` (True, False, or None for undecided), `pairs` of points of the nets, and `proof_checked`.
+        The answer, and the points of the nets if it is yes.
 
     Raises
     ------
@@ -182,7 +177,7 @@ def find_approximation(
     _check_scale(epsilon, "epsilon")
     if not as_number(delta, "delta") > 0.0:
         raise InvalidInputError(f"delta = {delta} is not a positive length; distances must differ by less than it.")
-    DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
+    DX, DY = both_distances(X, Y)
     level = float(np.nextafter(delta, 0.0))
     net_x, net_y = _net(DX, epsilon), _net(DY, epsilon)
     NX, NY = DX[np.ix_(net_x, net_x)], DY[np.ix_(net_y, net_y)]
@@ -208,11 +203,14 @@ def _by_relation(
     """What the distance decides, and the best relation: true if that is within the level, false if none is by far."""
     interval = first_interval(DX, DY, 0.0)
     if interval.upper > wanted and interval.lower <= hopeless and not clock.over:
-        engine = Engine(DX, DY, clock=clock)
-        interval.raise_lower(engine.row_bound, "sorted distances")
         interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
-        if interval.lower <= hopeless:
-            steps.warm_start(engine, interval, clock.part(0.2 * clock.left), target=wanted)
+        if len(DX) * len(DY) * (len(DX) + len(DY)) >= large.LARGE:
+            large.approach(DX, DY, interval, clock.part(0.5 * clock.left))
+        else:
+            engine = Engine(DX, DY, clock=clock)
+            interval.raise_lower(engine.row_bound, "sorted distances")
+            if interval.lower <= hopeless:
+                steps.warm_start(engine, interval, clock.part(0.2 * clock.left), target=wanted)
     found = True if interval.upper <= wanted else False if interval.lower > hopeless else None
     return found, interval.pairs
 

@@ -9,6 +9,8 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import maximum_bipartite_matching
 from scipy.spatial.distance import squareform
 
+from rinow.comparison.clock import Clock
+
 __all__ = ["diameter_bound", "eccentricity_bound", "matching_bound", "packing_bound", "single_linkage_bound"]
 
 Floats = NDArray[np.float64]
@@ -84,11 +86,14 @@ def _merges(D: Floats, method: str) -> Floats:
     return np.sort(linkage(squareform(D, checks=False), method)[:, 2])[::-1]
 
 
-def matching_bound(levels: Floats) -> float:
-    """Least level at which a perfect matching exists among the pairs (x, y) with levels[x, y] at most that."""
+def matching_bound(levels: Floats, clock: Clock | None = None) -> float:
+    """Least level at which a perfect matching exists among the pairs (x, y) with levels[x, y] at most that.
+
+    When the time is over, the least level that is not excluded yet.
+    """
     values = np.unique(levels)
     low, high = 0, len(values) - 1
-    while low < high:
+    while low < high and not (clock and clock.over):
         middle = (low + high) // 2
         matched = maximum_bipartite_matching(csr_array(levels <= values[middle]), perm_type="column")
         low, high = (low, middle) if (matched >= 0).all() else (middle + 1, high)

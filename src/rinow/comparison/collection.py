@@ -15,9 +15,10 @@ from rinow.comparison.correspondence import uniform_distance
 from rinow.comparison.gromov_hausdorff import gromov_hausdorff
 from rinow.comparison.hausdorff import as_point_set, hausdorff_distance
 from rinow.comparison.lipschitz import lipschitz_distance
-from rinow.errors import InvalidInputError, NotAMetricError
+from rinow.comparison.surfaces import check_connected
+from rinow.errors import InvalidInputError, naming
 from rinow.mesh import as_mesh, as_triangle_mesh, is_mesh_like
-from rinow.metric_space import as_metric_space
+from rinow.metric_space import as_metric_space, finite_distances
 
 __all__ = ["DistanceMatrix", "distance_matrix"]
 
@@ -115,20 +116,26 @@ def distance_matrix(
 
 
 def _space(value: Any, name: str) -> Any:
-    try:
-        return as_metric_space(value)
-    except NotAMetricError as error:
-        raise NotAMetricError(f"{name}: {error}", error.witness) from None
-    except InvalidInputError as error:
-        raise InvalidInputError(f"{name}: {error}") from None
+    with naming(name):
+        space = as_metric_space(value)
+        finite_distances(space)
+        return space
 
 
 def _space_or_mesh(value: Any, name: str) -> Any:
-    return as_mesh(value) if is_mesh_like(value) else _space(value, name)
+    if not is_mesh_like(value):
+        return _space(value, name)
+    with naming(name):
+        mesh = as_mesh(value)
+        check_connected(mesh)
+        return mesh
 
 
 def _set(value: Any, name: str) -> Any:
-    return as_triangle_mesh(value) if is_mesh_like(value) else as_point_set(value, name)
+    if not is_mesh_like(value):
+        return as_point_set(value, name)
+    with naming(name):
+        return as_triangle_mesh(value)
 
 
 def _gromov_hausdorff(X: Any, Y: Any, time_limit: float, tolerance: float) -> tuple[float, float]:

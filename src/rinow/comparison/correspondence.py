@@ -11,7 +11,7 @@ from rinow._arrays import as_index_tuples
 from rinow.comparison.engine import RELATION, worst_of
 from rinow.comparison.lipschitz import as_map
 from rinow.errors import InvalidInputError
-from rinow.metric_space import as_metric_space
+from rinow.metric_space import both_distances
 
 __all__ = ["as_relation", "distortion", "uniform_distance"]
 
@@ -57,7 +57,7 @@ def distortion(relation: ArrayLike, X: Any, Y: Any) -> float:
     >>> distortion([[0, 0], [1, 0], [2, 1]], X, Y), distortion([0, 1, 1], X, Y)
     (1.5, 1.5)
     """
-    DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
+    DX, DY = both_distances(X, Y)
     return worst_of(RELATION, DX, DY, as_relation(relation, len(DX), len(DY)))
 
 
@@ -115,7 +115,7 @@ def uniform_distance(X: Any, Y: Any) -> float:
     >>> uniform_distance([[0, 1], [1, 0]], [[0, 3], [3, 0]])
     2.0
     """
-    DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
+    DX, DY = both_distances(X, Y)
     if len(DX) != len(DY):
         raise InvalidInputError(f"X has {len(DX)} points and Y {len(DY)}; give two metrics on one set.")
     return float(np.abs(DX - DY).max())

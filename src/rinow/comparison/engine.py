@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +33,7 @@ SLICE = 20_000_000
 """Support tests between two looks at the clock: some tenths of a second."""
 
 TABLE_BYTES = 3 << 29
-"""Memory allowed for the runs of all possible pairs."""
+"""Memory allowed for the runs of all possible pairs and the sets of sorted rows."""
 
 UNLIMITED = 1 << 62
 """Work of a propagation that is small enough to be finished."""
@@ -80,14 +81,28 @@ class Engine:
         self, DX: Floats, DY: Floats, kind: int = RELATION, *, both: bool = True, clock: Clock | None = None
     ) -> None:
         self.DX, self.DY, self.kind, self.both = DX, DY, kind, both
-        self.X, self.Y = sorted_rows(DX), sorted_rows(DY)
-        self.levels = Levels(DX, DY)
         self.shape = len(DX), len(DY)
         self.row_levels = np.full(self.shape, float(kind == BIJECTION))
         small = self.row_levels.size * sum(self.shape) < SERIAL_WORK
         write = compatibility.row_discrepancies if small else compatibility.many_row_discrepancies
+        sorted_x, sorted_y = np.sort(DX, axis=1), np.sort(DY, axis=1)
         for part in blocks(len(DX), len(DY) * sum(self.shape), clock or Clock(math.inf)):
-            write(kind, both, self.X.distances[part], self.Y.distances, self.row_levels[part])
+            write(kind, both, sorted_x[part], sorted_y, self.row_levels[part])
+
+    @cached_property
+    def rows_x(self) -> compatibility.SortedRows:
+        """The rows of X with the sets of their first points, for searches."""
+        return sorted_rows(self.DX)
+
+    @cached_property
+    def rows_y(self) -> compatibility.SortedRows:
+        """The same of Y."""
+        return sorted_rows(self.DY)
+
+    @cached_property
+    def levels(self) -> Levels:
+        """The differences of distances of X and Y."""
+        return Levels(self.DX, self.DY)
 
     @property
     def row_bound(self) -> float:
@@ -119,8 +134,9 @@ class Engine:
         return state.possible() if state.sweep(clock) else None
 
     def fits(self, possible: Flags) -> bool:
-        """Whether the tables of the possible pairs fit into memory and into their index type."""
-        return 4 * int(possible.sum()) * sum(self.shape) <= TABLE_BYTES and max(self.shape) < 65536
+        """Whether the tables of the possible pairs, and the sets of sorted rows, fit into memory and index types."""
+        sets = sum(n**3 // 8 for n in self.shape)
+        return 4 * int(possible.sum()) * sum(self.shape) + sets <= TABLE_BYTES and max(self.shape) < 65536
 
 
 class State:
@@ -154,7 +170,7 @@ class State:
         self.level, written = level, 0
         write = compatibility.write_runs if self._small else compatibility.write_many_runs
         for part in blocks(len(self.pairs), sum(e.shape), clock):
-            write(e.kind, e.X, e.Y, level, self.pairs[part], self.runs.over_x[part], self.runs.over_y[part])
+            write(e.kind, e.rows_x, e.rows_y, level, self.pairs[part], self.runs.over_x[part], self.runs.over_y[part])
             written = part.stop
         self.ready = written == len(self.pairs)
 
@@ -171,7 +187,7 @@ class State:
             return True
         if self._small:
             emptied, _ = correspondences.propagate(
-                relation, queue, self.runs, e.X, e.Y, e.both, self.weights, UNLIMITED
+                relation, queue, self.runs, e.rows_x, e.rows_y, e.both, self.weights, UNLIMITED
             )
             return emptied < 0
         doomed = np.empty_like(relation.rows)
@@ -181,7 +197,7 @@ class State:
             n_columns = n_columns if e.both else 0
             if n_rows + n_columns == 0:
                 break
-            correspondences.sweep(relation, queue, n_rows, n_columns, self.runs, e.X, e.Y, doomed)
+            correspondences.sweep(relation, queue, n_rows, n_columns, self.runs, e.rows_x, e.rows_y, doomed)
             if not correspondences.delete_all(relation, queue, doomed, e.both):
                 return False
         return True
@@ -209,7 +225,7 @@ class Search:
         )
         trivial = np.arange(n)[None], np.arange(m)[None]
         self._problem = correspondence_search.Problem(
-            engine.X, engine.Y, self.state.runs, engine.both, *(isometries or trivial)
+            engine.rows_x, engine.rows_y, self.state.runs, engine.both, *(isometries or trivial)
         )
         self._progress = np.zeros(8, np.int64)
         self._progress[correspondence_search.DESCENDING] = 1

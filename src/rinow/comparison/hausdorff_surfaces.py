@@ -34,8 +34,8 @@ class _Direction:
     """The greatest distance of one surface from the other, enclosed face by face."""
 
     def __init__(self, moving: Surface, fixed: Surface) -> None:
-        self.moving, self.fixed = moving, fixed
-        nearest, self.distances = fixed.nearest(moving.points, moving.order)
+        self.moving, self.fixed = moving, fixed.seen_from(moving.points[moving.order])
+        nearest, self.distances = self.fixed.nearest(moving.points, moving.order)
         self.hints = nearest[moving.corner_points]
         n = len(moving.corner_points)
         self.bounds, self.points, self.n_pieces = np.zeros((n, 2)), np.zeros((n, 3)), np.zeros(n, np.intp)

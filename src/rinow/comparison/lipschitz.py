@@ -18,12 +18,16 @@ from rinow.comparison.engine import BIJECTION, Engine, worst_of
 from rinow.comparison.interval import Interval
 from rinow.errors import InvalidInputError
 from rinow.kernels import distortion
-from rinow.metric_space import MetricSpace, as_metric_space
+from rinow.kernels.compatibility import sorted_ratio
+from rinow.metric_space import MetricSpace, both_distances
 
 __all__ = ["LipschitzDistance", "MetricSpace", "as_map", "dilatation", "infinitely_far", "lipschitz_distance"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
+
+SEARCHED = 1500
+"""Points of spaces whose bijections are searched: one step of a search is cubic, and looks at no clock."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -40,8 +44,8 @@ class LipschitzDistance(OneLine):
         Image of each point of X; `upper` is the logarithm of the larger dilatation of this map and its inverse.  Empty
         for spaces of unequal size.
     lower_bound_by : str
-        What proved `lower`: "non-negativity", "size", "sorted distances", "matching", "arc consistency", "search" or
-        "satisfiability".
+        What proved `lower`: "non-negativity", "size", "eccentricities", "sorted distances", "matching", "arc
+        consistency", "search" or "satisfiability".
     proof_checked : bool or None
         Whether the proof that a clause-learning solver gave for `lower` was checked; None if `lower` needs none.
     """
@@ -65,7 +69,7 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
         Two finite metric spaces, or their distance matrices.
     time_limit : float, default 60
         Seconds after which the search stops with the bounds reached so far; with 0 the bounds that cost no search.
-        One step may overrun it by some tenths of a second.
+        One step may overrun it by some tenths of a second.  Bijections of more than 1500 points are not searched.
     verify : bool, default False
         Have the clause-learning solver write down its proof, and check it: that takes two or three times as long
         as finding it.  A refutation with a wrong proof is not used.
@@ -112,7 +116,7 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
     (True, 0.693147, array([0, 1, 2, 3]))
     """
     clock = Clock.of(time_limit)
-    DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
+    DX, DY = both_distances(X, Y)
     if len(DX) != len(DY):
         return infinitely_far()
     _check_ratios(DX, DY)
@@ -120,8 +124,10 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
     if not interval.closed and not clock.over:
         engine = Engine(DX, DY, BIJECTION, clock=clock)
         interval.raise_lower(engine.row_bound, "sorted distances")
-        interval.raise_lower(matching_bound(engine.row_levels), "matching")
-        steps.close(engine, interval, clock)
+        if not clock.over:
+            interval.raise_lower(matching_bound(engine.row_levels, clock), "matching")
+        if len(DX) <= SEARCHED:
+            steps.close(engine, interval, clock)
     f = np.empty(len(DX), np.intp)
     f[interval.pairs[:, 0]] = interval.pairs[:, 1]
     lower, upper = math.log(interval.lower), math.log(interval.upper)
@@ -144,12 +150,18 @@ def _check_ratios(DX: Floats, DY: Floats) -> None:
 
 
 def _first_interval(DX: Floats, DY: Floats, *, verify: bool) -> Interval:
-    """The better one of the identity and the map that keeps the order of the mean distances."""
+    """The better one of the identity and the map that keeps the order of the mean distances.
+
+    From below the eccentricities, in order, differ by the factor at most: the list of one space is that of the images.
+    """
     by_mean = np.argsort(DX.mean(axis=1), kind="stable"), np.argsort(DY.mean(axis=1), kind="stable")
     maps = [np.stack(by_mean, axis=1), np.repeat(np.arange(len(DX))[:, None], 2, axis=1)]
     values = [worst_of(BIJECTION, DX, DY, pairs) for pairs in maps]
     best = int(np.argmin(values))
-    return Interval(maps[best], max(values[best], 1.0), lower=1.0, verify=verify)
+    interval = Interval(maps[best], max(values[best], 1.0), lower=1.0, verify=verify)
+    ratio = float(sorted_ratio(np.sort(DX.max(axis=1)), np.sort(DY.max(axis=1))))
+    interval.raise_lower(ratio, "eccentricities")
+    return interval
 
 
 def dilatation(f: ArrayLike, X: Any, Y: Any) -> float:
@@ -188,7 +200,7 @@ def dilatation(f: ArrayLike, X: Any, Y: Any) -> float:
     >>> dilatation([0, 2, 1], [[0, 1, 2], [1, 0, 1], [2, 1, 0]], [[0, 1, 2], [1, 0, 1], [2, 1, 0]])
     2.0
     """
-    DX, DY = as_metric_space(X).distances, as_metric_space(Y).distances
+    DX, DY = both_distances(X, Y)
     image = as_map(f, len(DX), len(DY))
     stretches = np.empty(len(DX))
     distortion.largest_stretches(DX, DY, image, stretches)

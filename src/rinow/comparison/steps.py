@@ -56,7 +56,7 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
     n_points = sum(engine.shape)
     warm = max(WARM * clock.left, min(LONGEST_WARM * clock.left, n_points * n_points / WARM_SPEED))
     warm_start(engine, interval, clock.part(warm))
-    if interval.closed:
+    if interval.closed or clock.over:
         return
     listing = clock.part(SYMMETRY * clock.left)
     symmetries = isometries(engine.DX, listing), isometries(engine.DY, listing)
@@ -84,6 +84,8 @@ def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: floa
     Nearly isometric spaces are done after the first: arc consistency refutes what is below.  Where levels are few they
     are met one by one afterwards.
     """
+    if clock.over:
+        return
     rng = np.random.default_rng(20)
     for k, search in enumerate(_searches(engine, rng, interval, clock)):
         search.run(MOVES * sum(engine.shape), clock, max(target, interval.lower))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -73,6 +73,20 @@ class Surface:
         box_trees.nearest_triangles(self.tree, points, order, nearest, distances)
         return nearest, distances
 
+    def seen_from(self, points: Floats) -> Surface:
+        """The same surface, made ready for questions from points that it surrounds or that lie close together.
+
+        Boxes nearly as far from a point as the nearest one are many if the point is near the centre of a sphere; the
+        directions in which they lie tell more.
+        """
+        eye = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        _, (empty,) = self.nearest(eye[None], np.zeros(1, np.intp))
+        if np.linalg.norm(points - eye, axis=1).max() >= empty:
+            return self
+        tree = self.tree._replace(eye=eye, views=np.empty((len(self.tree.boxes), box_trees.VIEW)))
+        box_trees.bound_views(tree)
+        return replace(self, tree=tree)
+
     def foot(self, point: Floats) -> Floats:
         """(3,): the point of the surface nearest to a point."""
         nearest, _ = self.nearest(point[None, :], np.zeros(1, np.intp))
@@ -115,4 +129,5 @@ def _sorted(points: Floats, triangles: Indices) -> Surface:
     box_trees.bound_boxes(corners, depth, boxes)
     corner_points = np.ascontiguousarray(triangles[order])
     used, first = np.unique(corner_points, return_index=True)
-    return Surface(points, used[np.argsort(first)], corner_points, BoxTree(corners, order, boxes, depth))
+    tree = BoxTree(corners, order, boxes, depth, np.zeros(3), np.empty((0, box_trees.VIEW)))
+    return Surface(points, used[np.argsort(first)], corner_points, tree)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,12 +13,13 @@ from scipy.sparse.csgraph import dijkstra
 
 from rinow import tolerances
 from rinow.comparison.clock import Clock
-from rinow.errors import InvalidMeshError, NotAMetricError
+from rinow.errors import InvalidInputError, InvalidMeshError, NotAMetricError, naming
+from rinow.geodesics.distances import geodesic_space
 from rinow.geodesics.edge_graph import edge_graph
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh, is_mesh_like
-from rinow.metric_space import as_metric_space
+from rinow.metric_space import MetricSpace, finite_distances
 
-__all__ = ["Sample", "eccentricity_gap", "sample_of", "samples_of"]
+__all__ = ["Sample", "check_connected", "eccentricity_gap", "geodesics_within", "sample_of", "samples_of"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -76,11 +78,12 @@ class Sample:
 
 def samples_of(X: Any, Y: Any, clock: Clock) -> tuple[Sample, Sample]:
     """The samples of two spaces or meshes, in a share of the time."""
-    clocks = (
-        (clock.part(share * clock.left) for share in (SHARE, of_small, SHARE_OF_ALL)) for of_small in SHARES_OF_SMALL
-    )
-    first, second = (sample_of(thing, *shares) for thing, shares in zip((X, Y), clocks, strict=True))
-    return first, second
+    samples: list[Sample] = []
+    for name, thing, of_small in zip("XY", (X, Y), SHARES_OF_SMALL, strict=True):
+        clocks = (clock.part(share * clock.left) for share in (SHARE, of_small, SHARE_OF_ALL))
+        with naming(name):
+            samples.append(sample_of(thing, *clocks))
+    return samples[0], samples[1]
 
 
 def sample_of(thing: Any, clock: Clock, clock_of_small: Clock, clock_of_all: Clock) -> Sample:
@@ -94,7 +97,7 @@ def sample_of(thing: Any, clock: Clock, clock_of_small: Clock, clock_of_all: Clo
         If a matrix is not a metric, or the faces of a mesh are not connected.
     """
     if not is_mesh_like(thing):
-        D = as_metric_space(thing).distances
+        D = finite_distances(thing)
         return Sample(np.arange(len(D)), D, D, 0.0)
     return _net(*_connected_edges(as_mesh(thing)), clock, clock_of_small, clock_of_all)
 
@@ -121,19 +124,58 @@ def _one_sided(X: Sample, Y: Sample, r: float, s: float) -> float:
 
 def _connected_edges(mesh: TriangleMesh | IntrinsicMesh) -> tuple[csr_array, Indices]:
     """The edges of a mesh between the vertices that have a face, and these vertices."""
+    check_connected(mesh)
     vertices = np.flatnonzero(mesh.topology.vertex_is_used)
-    if not len(vertices):
-        raise InvalidMeshError("mesh has no face with three different finite vertices; a space has at least one point.")
     return csr_array(edge_graph(mesh)[vertices][:, vertices]), vertices
 
 
-def _check_connected(row: Floats, vertices: Indices) -> None:
-    apart = np.flatnonzero(np.isinf(row))
+def check_connected(mesh: TriangleMesh | IntrinsicMesh, *, every_vertex: bool = False) -> None:
+    """Refuse a mesh whose faces are not connected, or with `every_vertex` one with a vertex that has no face.
+
+    Raises
+    ------
+    InvalidMeshError
+        If no face takes part, or one of the vertices has no face.
+    NotAMetricError
+        If no path joins two vertices; they are the witness.
+    """
+    parts = mesh.components
+    used, bare = np.flatnonzero(parts >= 0), np.flatnonzero(parts < 0)
+    if not len(used):
+        raise InvalidMeshError("mesh has no face with three different finite vertices; a space has at least one point.")
+    apart = used[parts[used] != parts[used[0]]]
     if len(apart):
-        raise NotAMetricError(
-            f"mesh has no path from vertex {vertices[0]} to vertex {vertices[apart[0]]}; take one component.",
-            (int(vertices[0]), int(vertices[apart[0]])),
-        )
+        i, j = int(used[0]), int(apart[0])
+        raise NotAMetricError(f"mesh has no path from vertex {i} to vertex {j}; take one component.", (i, j))
+    if every_vertex and len(bare):
+        raise InvalidMeshError(f"mesh has no face at vertex {bare[0]}, and so no path to it; remove such vertices.")
+
+
+def geodesics_within(mesh: TriangleMesh | IntrinsicMesh, clock: Clock) -> MetricSpace:
+    """All vertices of a mesh with their exact geodesic distances, if the time suffices for them.
+
+    What the first sources take tells what all of them will take.
+
+    Raises
+    ------
+    InvalidInputError
+        If the time will not suffice, or is over.
+    """
+    first: list[float] = []
+
+    def look(done: int, total: int) -> None:
+        first.append(clock.elapsed)
+        if len(first) == 1 or done == total:  # the first sources load compiled code, too
+            return
+        expected = (first[-1] - first[0]) / (1.0 - 1.0 / len(first)) * total / done
+        if clock.over or expected > clock.seconds:
+            raise InvalidInputError(
+                f"the geodesic distances of {total:,} vertices take about {expected:.2g} s, too much for the "
+                f"time limit; allow {math.ceil(3.0 * expected)} s, or simplify the meshes."
+            )
+
+    check_connected(mesh, every_vertex=True)
+    return geodesic_space(mesh, progress=look)
 
 
 def _net(graph: csr_array, vertices: Indices, clock: Clock, clock_of_small: Clock, clock_of_all: Clock) -> Sample:
@@ -144,8 +186,6 @@ def _net(graph: csr_array, vertices: Indices, clock: Clock, clock_of_small: Cloc
     nearest = np.full(n, np.inf)
     for k in range(size):
         rows[k] = dijkstra(graph, indices=chosen[k])
-        if k == 0:
-            _check_connected(rows[0], vertices)
         np.minimum(nearest, rows[k], out=nearest)
         nearest[chosen[k]] = -1.0  # vertices may coincide
         limit = clock_of_small if k < SMALL_NET else clock if k < LARGEST_NET else clock_of_all

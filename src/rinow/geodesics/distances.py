@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import Any, Literal
 
@@ -111,7 +112,9 @@ def geodesic_distances(
     return rows_within(marked_rows_of, S, surface.n_vertices, radii)
 
 
-def geodesic_space(mesh: Any, indices: ArrayLike | None = None) -> MetricSpace:
+def geodesic_space(
+    mesh: Any, indices: ArrayLike | None = None, *, progress: Callable[[int, int], None] | None = None
+) -> MetricSpace:
     """Vertices of a mesh with their exact geodesic distances, as a metric space.
 
     Parameters
@@ -120,6 +123,8 @@ def geodesic_space(mesh: Any, indices: ArrayLike | None = None) -> MetricSpace:
         The surface; edge lengths suffice.
     indices : (n_points,) array_like of int, optional
         The vertices to take, all by default.
+    progress : callable, optional
+        Called with the numbers of vertices done and in all, again and again; what it raises stops the computation.
 
     Returns
     -------
@@ -156,6 +161,8 @@ def geodesic_space(mesh: Any, indices: ArrayLike | None = None) -> MetricSpace:
     for first in range(0, len(chosen), _SOURCES_AT_ONCE):
         block = slice(first, first + _SOURCES_AT_ONCE)
         D[block] = np.asarray(geodesics.distances(chosen[block]))[:, chosen]
+        if progress is not None:
+            progress(min(block.stop, len(chosen)), len(chosen))
     lost = np.argwhere(~np.isfinite(D))
     if len(lost):
         i, j = (int(chosen[k]) for k in lost[0])

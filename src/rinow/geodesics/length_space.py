@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 from rinow._arrays import as_indices, as_number
 from rinow.errors import InvalidInputError
 from rinow.kernels.midpoints import worst_midpoint_defects
-from rinow.metric_space import MetricSpace, as_metric_space
+from rinow.metric_space import MetricSpace, as_metric_space, finite_distances
 
 __all__ = ["as_step", "intrinsic_metric", "length_defect", "midpoints", "step_graph"]
 
@@ -100,10 +100,7 @@ def length_defect(space: Any) -> float:
     >>> length_defect(abs(np.arange(6.0)[:, None] - np.arange(6.0)))
     1.0
     """
-    D = as_metric_space(space).distances
-    if not np.isfinite(D).all():
-        i, j = np.argwhere(~np.isfinite(D))[0]
-        raise InvalidInputError(f"distances[{i}, {j}] is infinite; take one component.")
+    D = finite_distances(space)
     worst = np.empty(len(D))
     worst_midpoint_defects(D, worst)
     return float(worst.max())

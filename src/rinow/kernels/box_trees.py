@@ -10,9 +10,9 @@ from rinow.kernels._jit import kernel, parallel_kernel, prange
 LEAF, BLOCK, ROOM = 4, 256, 64
 """Triangles in a leaf at most, points that one thread takes together, and the height of the stack of open boxes."""
 
-BOX, FLAT = 11, 256
-"""Numbers of a box, and the triangles in the largest one that has a slab.  Without slabs a point near the centre of a
-sphere would look into most of its boxes."""
+BOX, FLAT, VIEW = 11, 256, 7
+"""Numbers of a box, the triangles in the largest one that has a slab, and numbers of the view of a box.  Without slabs
+and views a point near the centre of a sphere would look into most of its boxes."""
 
 TINY = 1e-150
 """Doubled area below which squares lose digits, and with them a unit vector its length."""
@@ -31,6 +31,9 @@ class BoxTree(NamedTuple):
     order: np.ndarray  # (n,), number of each triangle before it was sorted
     boxes: np.ndarray  # (2 leaves, BOX): least and greatest coordinates; a unit vector, least and greatest height in it
     depth: int
+    eye: np.ndarray  # (3,), a point from which the boxes were looked at
+    views: np.ndarray  # (2 leaves, VIEW): least and greatest coordinates of the unit vectors to the eye, least height
+    # of the eye in them; or (0, VIEW)
 
 
 @kernel
@@ -131,6 +134,50 @@ def _bound_slab(corners, first, last, box):
 
 
 @kernel
+def bound_views(tree):
+    """Write how the boxes look from the eye, leaves first.
+
+    A unit vector u points to the eye from the nearest point of each triangle.  If all of the triangle lies at least h
+    below the eye in this direction, then it is at least h + u · v away from the point at the offset v from the eye.
+    """
+    n, leaves, eye, views = tree.corners.shape[0], 1 << tree.depth, tree.eye, tree.views
+    for i in range(2 * leaves - 1, 0, -1):
+        views[i, :3], views[i, 3:6], views[i, 6] = np.inf, -np.inf, np.inf
+        if i < leaves:
+            for k in range(7):
+                one, other = views[2 * i, k], views[2 * i + 1, k]
+                views[i, k] = max(one, other) if 3 <= k < 6 else min(one, other)
+            continue
+        for t in range((i - leaves) * n >> tree.depth, (i + 1 - leaves) * n >> tree.depth):
+            x, y, z = foot_on_triangle(tree.corners, t, eye[0], eye[1], eye[2])
+            u, v, w = eye[0] - x, eye[1] - y, eye[2] - z
+            size = max(math.sqrt(_square(u, v, w)), TINY)
+            u, v, w, height = u / size, v / size, w / size, np.inf
+            for k in range(0, 9, 3):
+                x, y, z = eye[0] - tree.corners[t, k], eye[1] - tree.corners[t, k + 1], eye[2] - tree.corners[t, k + 2]
+                height = min(height, u * x + v * y + w * z)
+            for axis, value in enumerate((u, v, w)):
+                views[i, axis], views[i, 3 + axis] = min(views[i, axis], value), max(views[i, 3 + axis], value)
+            views[i, 6] = min(views[i, 6], height)
+
+
+@kernel
+def gap_of_view(tree, i, x, y, z):
+    """Squared distance of a point from a box, as far as the view of the box tells."""
+    u, v, w, view = x - tree.eye[0], y - tree.eye[1], z - tree.eye[2], tree.views[i]
+    along = min(u * view[0], u * view[3]) + min(v * view[1], v * view[4]) + min(w * view[2], w * view[5])
+    height = max(view[6] + along, 0.0)
+    return height * height
+
+
+@kernel
+def gap_of(tree, i, x, y, z):
+    """Lower bound of the squared distance of a point from the triangles in a box."""
+    gap = box_gap(tree.boxes, i, x, y, z)
+    return max(gap, gap_of_view(tree, i, x, y, z)) if len(tree.views) > 0 else gap
+
+
+@kernel
 def doubled_area(corners, t):
     """Vector at right angles to a triangle, twice as long as its area."""
     bx, by, bz = corners[t, 3] - corners[t, 0], corners[t, 4] - corners[t, 1], corners[t, 5] - corners[t, 2]
@@ -154,7 +201,7 @@ def nearest_triangle(tree, x, y, z, hint, stack, gaps):
     """Nearest triangle to a point and its squared distance; `hint` is any triangle, the nearer the faster."""
     n, leaves = tree.corners.shape[0], 1 << tree.depth
     best, nearest = triangle_gap(tree.corners, hint, x, y, z), hint
-    stack[0], gaps[0], top = 1, box_gap(tree.boxes, 1, x, y, z), 1
+    stack[0], gaps[0], top = 1, gap_of(tree, 1, x, y, z), 1
     while top > 0:
         top -= 1
         i = stack[top]
@@ -166,7 +213,7 @@ def nearest_triangle(tree, x, y, z, hint, stack, gaps):
                 if gap < best:
                     best, nearest = gap, t
             continue
-        left, right = box_gap(tree.boxes, 2 * i, x, y, z), box_gap(tree.boxes, 2 * i + 1, x, y, z)
+        left, right = gap_of(tree, 2 * i, x, y, z), gap_of(tree, 2 * i + 1, x, y, z)
         near = 2 * i if left <= right else 2 * i + 1
         if max(left, right) < best:
             stack[top], gaps[top] = 4 * i + 1 - near, max(left, right)

@@ -41,7 +41,7 @@ def discrepancy(kind, a, b):
         return 1.0
     if a == 0.0 or b == 0.0:
         return np.inf
-    return max(b / a, a / b)
+    return b / a if b > a else a / b
 
 
 @kernel

@@ -12,9 +12,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from rinow._arrays import as_indices
 from rinow._printing import OneLine
-from rinow.errors import InvalidInputError
 from rinow.geodesics.length_space import as_step, step_graph
-from rinow.metric_space import as_metric_space
+from rinow.metric_space import as_metric_space, finite_distances
 from rinow.nets.farthest_point import farthest_point_net
 
 __all__ = ["EpsilonGraph", "epsilon_graph"]
@@ -104,9 +103,7 @@ def epsilon_graph(space: Any, epsilon: float, *, indices: ArrayLike | None = Non
     0.0628 True 0.0000
     """
     whole = as_metric_space(space)
-    D, step = whole.distances, as_step(epsilon, "epsilon")
-    if not np.isfinite(whole.diameter):
-        raise InvalidInputError("space has infinite distances; take one component.")
+    D, step = finite_distances(whole), as_step(epsilon, "epsilon")
     fine = step * step / (4.0 * whole.diameter) if whole.diameter > 0.0 else np.inf
     if indices is None:
         chosen = farthest_point_net(whole, radius=float(np.nextafter(fine, 0.0))).indices

@@ -9,11 +9,12 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.comparison.clock import Clock
 from rinow.comparison.gromov_hausdorff import GromovHausdorff, gromov_hausdorff
 from rinow.comparison.hausdorff import HausdorffDistance, hausdorff_distance
 from rinow.comparison.lipschitz import LipschitzDistance, infinitely_far, lipschitz_distance
+from rinow.comparison.surfaces import geodesics_within
 from rinow.errors import InvalidInputError
-from rinow.geodesics.distances import geodesic_space
 from rinow.mesh import TriangleMesh
 from rinow.metric_space import MetricSpace, as_metric_space
 
@@ -26,6 +27,8 @@ Result = HausdorffDistance | GromovHausdorff | LipschitzDistance
 PERCENTILES = (0, 25, 50, 75, 95, 100)
 MOST_POINTS = 4096
 """Vertices of a mesh that the Lipschitz distance takes: it knows bijections of all points only."""
+SHARES = (0.4, 0.7)
+"""Shares of the time left for all geodesic distances of the first mesh, and then for those of the second one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,8 +115,8 @@ def compare_shapes(
     tolerance : float, default 1e-4
         Greatest width of the interval of the Hausdorff distance of surfaces, relative to their diagonal.
     time_limit : float, default 60
-        Seconds after which the other two distances stop with the interval reached.  The geodesic distances of meshes,
-        which the Lipschitz distance needs, come before.
+        Seconds after which the other two distances stop with the interval reached.  The Lipschitz distance of meshes
+        needs all their geodesic distances first; if these take too long, it is refused after a second or two.
     verify : bool, default False
         Have proofs of a clause-learning solver checked, for these two distances.
     unit : str, optional
@@ -127,9 +130,10 @@ def compare_shapes(
     Raises
     ------
     InvalidInputError
-        If the distance is not defined between shapes of this kind, or a mesh has too many vertices for it.
+        If the distance is not defined between shapes of this kind, or a mesh has too many vertices for it or for the
+        time limit.
     """
-    begin = time.perf_counter()
+    begin, clock = time.perf_counter(), Clock.of(time_limit)
     if metric == "hausdorff":
         if kind == "distances":
             raise InvalidInputError(
@@ -138,18 +142,20 @@ def compare_shapes(
             )
         result: Result = hausdorff_distance(a, b, tolerance=tolerance)
     elif metric == "gromov-hausdorff":
-        X, Y = (shape if kind == "surfaces" else _space(shape, kind) for shape in (a, b))
-        result = gromov_hausdorff(X, Y, time_limit=time_limit, verify=verify)
+        X, Y = (shape if kind == "surfaces" else _space(shape, kind, clock) for shape in (a, b))
+        result = gromov_hausdorff(X, Y, time_limit=clock.left, verify=verify)
     elif kind == "surfaces" and a.n_vertices != b.n_vertices:  # no need for distances
         result, unit = infinitely_far(), "1"
     else:
-        X, Y = _space(a, kind), _space(b, kind)
-        result, unit = lipschitz_distance(X, Y, time_limit=time_limit, verify=verify), "1"
+        X, Y = (
+            _space(shape, kind, clock.part(share * clock.left)) for shape, share in zip((a, b), SHARES, strict=True)
+        )
+        result, unit = lipschitz_distance(X, Y, time_limit=clock.left, verify=verify), "1"
     return ComparisonStudy(metric, kind, result, time.perf_counter() - begin, unit)
 
 
-def _space(shape: Any, kind: Kind) -> MetricSpace:
-    """A shape as a finite metric space."""
+def _space(shape: Any, kind: Kind, clock: Clock) -> MetricSpace:
+    """A shape as a finite metric space, a surface in the time of a clock."""
     if kind == "points":
         return MetricSpace.from_points(shape)
     if kind == "distances":
@@ -159,4 +165,4 @@ def _space(shape: Any, kind: Kind) -> MetricSpace:
             f"a mesh has {shape.n_vertices:,} vertices, more than the {MOST_POINTS:,} of which the Lipschitz distance "
             "can keep all distances; simplify the meshes to equal numbers of vertices."
         )
-    return geodesic_space(shape)
+    return geodesics_within(shape, clock)
