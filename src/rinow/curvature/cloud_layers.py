@@ -35,6 +35,8 @@ of a fifth of the spacing leaves half of it."""
 LEAST_CLAIMS, MOST_LOST = 18, 0.5
 """Points that must have a lost one on their sheets for it to be one of them, and the share of lost points from which
 nothing around is known."""
+BETWEEN = 0.25
+"""Share of its neighbours that gaps part from others from which on a point without such a gap is between two sheets."""
 
 
 class Near(NamedTuple):
@@ -76,7 +78,8 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     A quadric of least moduli, which a few strays do not bend, goes through the points around each one, without itself.
     A curved surface of few points leaves residuals too; their median, over the points around, raises the limit.  Where
     one of the residuals is large, the sheet of the point is followed outwards, see `kernels.cloud_layers`; where no gap
-    parts it from other points the neighbours stay.  Nothing is examined where fewer than 36 points are looked at.
+    parts it from other points the neighbours stay, unless gaps part many of these: then the point has the neighbours
+    that have it on their sheets, or is lost.  Nothing is examined where fewer than 36 points are looked at.
     """
     near, n = nearest_points(points), len(points)
     if near.indices.shape[1] < NEAREST:
@@ -97,16 +100,19 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
 
 
 def _follow_sheets(points: Floats, near: Near, owners: Indices, is_thick: Bools) -> tuple[Bools, Bools]:
-    """Overwrite the rows of points beside another sheet by those on their own; which thick ones are on none, or all."""
+    """Overwrite the rows of points beside another sheet by those on their own; which are on none, or thick, or lost."""
     is_unclear, is_lost = np.zeros((2, len(points)), np.bool_)
     distances, indices = KDTree(points).query(points[owners], min(LOOKED_AT, len(points) - 1) + 1)
     distances, indices = distances[:, 1:].copy(), np.asarray(indices, np.intp)[:, 1:].copy()
     is_own, thickness = np.empty(indices.shape, np.bool_), np.empty(len(owners))
     cloud_layers.layers(owners, points, indices, distances, N_BLOCKS, is_own, thickness)
     is_unclear[owners] = (thickness > THICKEST) & is_thick[owners]
-    parted = ~is_own.all(axis=1)
-    owners, distances, indices, is_own = owners[parted], distances[parted], indices[parted], is_own[parted]
-    is_lost[owners] = is_unclear[owners]
+    is_parted = np.zeros(len(points), np.bool_)
+    is_parted[owners] = ~is_own.all(axis=1)
+    is_between = ~is_parted[owners] & (is_parted[near.indices[owners]].mean(axis=1) > BETWEEN)
+    is_lost[owners] = is_between | (is_unclear[owners] & is_parted[owners])
+    rows = np.flatnonzero(is_between | is_parted[owners])
+    owners, distances, indices, is_own = owners[rows], distances[rows], indices[rows], is_own[rows]
     _write(near, owners, distances, indices, is_own & ~is_lost[owners, None])
     _drop_strangers(points, near, owners)
     is_lost = _adopted(near, is_lost)

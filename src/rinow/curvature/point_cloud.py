@@ -75,7 +75,8 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
 
     Where a quadric does not fit all of the nearest points, that through the point is followed outwards, and only points
     on this sheet are its neighbours.  Sheets are told from each other at nearly all points if they are 1.5 spacings
-    apart in an even sample, two in a random one.  Nearer sheets are taken for one with noise, and so are their values.
+    apart in an even sample, two in a random one.  Of nearer ones more and more points are UNRESOLVED, and the spread of
+    the others holds what two sheets taken for one with detail are off.
 
     `spread` is that of the fits of `surface_curvature`.  With much noise a tenth of the points of a border are not seen
     to be there, and their spread is somewhat too small.
