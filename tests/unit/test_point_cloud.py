@@ -80,6 +80,45 @@ def test_repeated_and_undefined_points():
     np.testing.assert_array_equal(cloud.gaussian[:400], alone.gaussian)
 
 
+def test_points_apart_by_rounding_are_one():
+    # Eighty points make the pole of a sphere of latitudes and longitudes, and none of them equals another.
+    t, p = (g.ravel() for g in np.meshgrid(np.linspace(0.1, np.pi, 40), np.arange(80) * np.pi / 40, indexing="ij"))
+    points = np.column_stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)])
+    cloud = rinow.point_cloud_curvature(points)
+    has_value = np.isfinite(cloud.gaussian)
+    assert has_value.mean() > 0.9
+    np.testing.assert_allclose(cloud.gaussian[has_value], 1.0, rtol=1e-9)  # 0 at the pole, of a plane of rounding
+    assert len(np.unique(cloud.status[-80:])) == 1
+
+
+def test_two_far_clusters_and_far_points():
+    near, other = shapes.irregular_sphere(500).vertices, shapes.irregular_sphere(400).vertices
+    far = np.array([[0, 1e5, 0], [0, 0, 3e4]])
+    cloud = rinow.point_cloud_curvature(np.concatenate([near, other + np.array([1e6, 0, 0]), far]))
+    np.testing.assert_allclose(cloud.gaussian[:900], 1.0, rtol=1e-6)  # 1e6 times the rounding of the places
+    assert (cloud.status[900:] == VertexStatus.UNRESOLVED).all()
+
+
+def test_a_plane_is_flat_to_rounding():
+    u, v = (g.ravel() for g in np.meshgrid(np.arange(30.0), np.arange(30.0)))
+    turn = np.linalg.qr(np.random.default_rng(7).normal(size=(3, 3)))[0]
+    cloud = rinow.point_cloud_curvature(np.column_stack([u, v, 0 * u]) @ turn)
+    assert np.abs(cloud.gaussian).max() == 0.0 and np.abs(cloud.mean).max() < 1e-11
+    assert np.mean(cloud.status == VertexStatus.OK) == 28**2 / 30**2
+
+
+@pytest.mark.parametrize("n", [24, 36, 60, 100])
+def test_small_clouds_are_right_within_their_spread(n):
+    held = []
+    for seed in range(5, 10):
+        d = np.random.default_rng(seed).normal(size=(n, 3))
+        cloud = rinow.point_cloud_curvature(2 * d / np.linalg.norm(d, axis=1)[:, None])
+        known = np.isfinite(cloud.gaussian)
+        held.append(np.abs(cloud.gaussian - 0.25)[known] <= 2 * cloud.spread[known])
+    # Where all others were around each point, a fifth was held, and errors were as large as the value.
+    assert np.concatenate(held).mean() > (0.6 if n < 36 else 0.9)
+
+
 def test_radius_is_used():
     shape = shapes.irregular_sphere(500)
     cloud = rinow.point_cloud_curvature(shape.vertices, radius=0.5)

@@ -19,6 +19,8 @@ Indices = NDArray[np.intp]
 
 NEAREST = 36
 """Points looked at around each one: five rows of points that are five times as near along a row as across."""
+LEAST, PART = 8, 4
+"""Of a small cloud a quarter is around each point, but at least eight: more would be on the other side, too."""
 LOOKED_AT = 72
 """Points among which these are sought where there is more than one sheet."""
 FAR, SPARSE = 3.0, 2.0
@@ -66,7 +68,8 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     Returns
     -------
     near : Near
-        The 36 nearest points of the own sheet; rows of lost points are empty, but others have them in theirs.
+        The 36 nearest points of the own sheet, a quarter of all if these are few; rows of lost points are empty, but
+        others have them in theirs.
     is_stray : (n_points,) ndarray of bool
         The point is far from all others, or beside the quadric that fits those around it, alone or among points that
         are much rarer than those of the surface.
@@ -82,8 +85,9 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     that have it on their sheets, or is lost.  Nothing is examined where fewer than 36 points are looked at.
     """
     near, n = nearest_points(points), len(points)
+    around = max(n // PART, LEAST)
     if near.indices.shape[1] < NEAREST:
-        return near, np.zeros(n, np.bool_), np.zeros(n, np.bool_)
+        return _first(near, around), np.zeros(n, np.bool_), np.zeros(n, np.bool_)
     close = near.distances[:, :N_NEAR].mean(axis=1)
     is_far = close > FAR * np.median(close[near.indices[:, :N_NEAR]], axis=1)
     normals, offsets, middles, largest = np.empty_like(points), np.empty(n), np.empty(n), np.empty(n)
@@ -96,7 +100,11 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     farthest = np.maximum(offsets, largest) / spacing
     is_unclear, is_lost = _follow_sheets(points, near, np.flatnonzero(farthest > SPACINGS), farthest > THICK)
     is_stray = is_far | (is_beside & (is_sparse | (is_alone & is_unclear)))
-    return near, is_stray, is_lost & ~is_stray
+    return _first(near, around), is_stray, is_lost & ~is_stray
+
+
+def _first(near: Near, count: int) -> Near:
+    return Near(near.distances[:, :count].copy(), near.indices[:, :count].copy())
 
 
 def _follow_sheets(points: Floats, near: Near, owners: Indices, is_thick: Bools) -> tuple[Bools, Bools]:
