@@ -73,8 +73,8 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
 
     Points far from all others, and points beside the quadric of least moduli through those around them, by eight
     standard deviations of the noise and a third of the spacing, alone or much rarer than those, are left out: they are
-    UNRESOLVED.  So are all of fewer than 24 points, and points whose standard error exceeds 1.5/radius²: where points fill a part of space, near
-    creases, and on most of a curve.
+    UNRESOLVED.  So are all of fewer than 24 points, and points whose standard error exceeds 1.5/radius²: where points
+    fill a part of space, near creases, and on most of a curve.
 
     Where a quadric does not fit all of the nearest points, that through the point is followed outwards, and only points
     on this sheet are its neighbours.  Sheets are told from each other at nearly all points if they are 1.5 spacings
@@ -82,7 +82,7 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     the others holds what two sheets taken for one with detail are off.
 
     `spread` is that of the fits of `surface_curvature`.  With much noise a tenth of the points of a border are not seen
-    to be there, and their spread is somewhat too small.
+    to be there: they have the status OK, but the spread of a border, as all its neighbours do.
 
     Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Lengths from 1e-140 to
     1e140 neither overflow nor underflow.
