@@ -288,7 +288,7 @@ def test_squares_cover_the_points_in_the_frame(cloud):
     np.testing.assert_array_equal(np.unique(owner), np.arange(len(cloud.points) - 2))
     np.testing.assert_allclose(vertices.reshape(-1, 4, 3).mean(axis=1), cloud.points[:-2], atol=1e-12)
     mesh = rinow.TriangleMesh(vertices, faces)
-    np.testing.assert_allclose(mesh.face_areas.reshape(-1, 2).sum(axis=1), 1.3**2 * cloud.areas[:-2], rtol=1e-9)
+    np.testing.assert_allclose(mesh.face_areas.reshape(-1, 2).sum(axis=1), 1.8**2 * cloud.areas[:-2], rtol=1e-9)
 
 
 def test_a_cloud_without_any_value():

@@ -11,7 +11,7 @@ __all__ = ["framed", "normals", "squares"]
 
 Floats = NDArray[np.float64]
 
-OVERLAP = 1.3
+OVERLAP = 1.8
 """Side of a square over the root of the area that its point stands for: a cloud without gaps."""
 
 

@@ -1,12 +1,28 @@
 "use strict";
 // What the graphics processor runs, in GLSL.
 
-// Points of a cloud are discs as large as the area that each stands for; `scale` is what a unit is at distance 1.
+// Points of a cloud are cones seen from the tip, with discs as large as the area that each stands for: of two that
+// overlap the nearer centre is seen.  `scale` is how many pixels a unit has at distance 1.
 const DISC = `
 #ifdef DISCS
 in float size;
 uniform float scale;
-float discPixels(vec4 place) { return clamp(size * scale / place.w, 2.0, 60.0); }
+out float vDepth;
+void makeDisc(vec4 place) {
+  vec4 behind = projectionMatrix * (place - vec4(0.0, 0.0, size, 0.0));
+  gl_PointSize = clamp(size * scale / gl_Position.w, 2.0, 60.0);
+  vDepth = 0.5 * (behind.z / behind.w - gl_Position.z / gl_Position.w);
+}
+#endif
+`;
+const CONE = `
+#ifdef DISCS
+in float vDepth;
+void cutDisc() {
+  float r = 2.0 * length(gl_PointCoord - 0.5);
+  if (r > 1.0) discard;
+  gl_FragDepth = gl_FragCoord.z + vDepth * r;
+}
 #endif
 `;
 const SURFACE_VERTEX = `${DISC}
@@ -22,13 +38,13 @@ void main() {
   vPlace = place.xyz;
   gl_Position = projectionMatrix * place;
 #ifdef DISCS
-  gl_PointSize = discPixels(gl_Position);
+  makeDisc(place);
 #endif
 }`;
 // Lit from the viewer, as the still picture.  Where the faces around a vertex disagree (an edge of a part) the normal
 // of the face counts, elsewhere the mean normal of the vertices.  The inner side is darker.
 const SURFACE_FRAGMENT = `
-precision highp float;
+precision highp float;${CONE}
 in vec3 vTint;
 in vec4 vNormal;
 in vec3 vPlace;
@@ -36,7 +52,7 @@ uniform float smoothing;
 layout(location = 0) out vec4 colour;
 void main() {
 #ifdef DISCS
-  if (length(gl_PointCoord - 0.5) > 0.5) discard;
+  cutDisc();
   float slope = length(vNormal.xyz) > 1e-4 ? abs(dot(normalize(vNormal.xyz), normalize(vPlace))) : 1.0;
   colour = vec4(vTint * (0.52 + 0.48 * slope), 1.0);
 #else
@@ -53,19 +69,20 @@ const PICK_VERTEX = `${DISC}
 flat out uint vertex;
 void main() {
   vertex = uint(gl_VertexID) + 1u;
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  vec4 place = modelViewMatrix * vec4(position, 1.0);
+  gl_Position = projectionMatrix * place;
 #ifdef DISCS
-  gl_PointSize = discPixels(gl_Position);
+  makeDisc(place);
 #endif
 }`;
 const PICK_FRAGMENT = `
-precision highp float;
+precision highp float;${CONE}
 precision highp int;
 flat in uint vertex;
 layout(location = 0) out vec4 colour;
 void main() {
 #ifdef DISCS
-  if (length(gl_PointCoord - 0.5) > 0.5) discard;
+  cutDisc();
 #endif
   colour = vec4(uvec4(vertex, vertex >> 8, vertex >> 16, vertex >> 24) & 255u) / 255.0;
 }`;
