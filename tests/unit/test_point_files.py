@@ -64,7 +64,8 @@ def test_a_mesh_is_no_cloud(cloud, tmp_path):
     [
         (["points.xyz", "--method", "lifted"], "--method needs faces, and points.xyz holds points only"),
         (["points.xyz", "--quality", "fast"], "--quality needs faces"),
-        (["points.xyz", "--picture", "a.png"], "--picture needs faces"),
+        (["points.xyz", "--picture", "a.jpg"], "a.jpg"),
+        (["points.xyz", "--report", "points.xyz"], "is the input"),
         (["points.xyz", "-o", "out.obj"], "out.obj cannot hold points without faces; choose one of .ply .csv .npz"),
         (["points.ply", "-o", "points.ply"], "points.ply is the input"),
         (["points.xyz", "-o", "a.csv", "-o", "a.csv"], "a.csv is named twice"),

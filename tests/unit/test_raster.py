@@ -56,6 +56,18 @@ def test_colours_are_symmetric_and_clipped():
     assert colour_limit(np.zeros(4)) == 1.0
 
 
+def test_a_dense_part_counts_by_its_area():
+    values = np.concatenate([np.linspace(1, 2, 101), np.full(900, 50.0), [np.nan]])
+    areas = np.concatenate([np.full(101, 1.0), np.full(900, 1e-3), [1e6]])
+    # 0.009 of the area has nine of ten values.
+    scale = colour_scale(values, areas, signed=False)
+    assert (scale.low, scale.high) == pytest.approx((1.02, 2.0), abs=0.02) and scale.rule.endswith("of the area")
+    even = np.ones(len(values))
+    assert colour_limit(values, even) == pytest.approx(colour_limit(values), rel=1e-3)
+    assert colour_limit(values, 0 * even) == colour_limit(values)
+    assert colour_limit(1e200 * values, 1e-200 * areas) == pytest.approx(1e200 * colour_limit(values, areas))
+
+
 def test_colours_of_fields_that_are_never_negative_go_from_percentile_to_percentile():
     scale = colour_scale(np.append(np.linspace(1, 2, 101), [np.nan, 50.0]), signed=False)
     assert (scale.low, scale.high) == pytest.approx((1.02, 1.98), abs=0.02)

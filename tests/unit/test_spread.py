@@ -58,7 +58,7 @@ def test_two_spreads_of_a_cloud_hold_the_errors(surface):
     held = np.abs(errors) <= 2 * spreads
     assert held[:, ~ends].mean() > 0.9
     if ends.any():
-        assert held[:, ends].mean() > 0.85  # corners and their neighbours take a border for an inside
+        assert held[:, ends].mean() > 0.9  # some take a border for an inside, but not their neighbours
 
 
 def test_patches_that_differ_raise_the_spread():

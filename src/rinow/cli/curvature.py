@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from cyclopts import Parameter
@@ -14,11 +14,10 @@ from rinow.errors import InvalidInputError
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
 from rinow.io.point_files import check_point_outputs, holds_points, read_cloud, write_points
 from rinow.study.features import FeatureStudy, study_features
-from rinow.study.points import point_counts, study_points
+from rinow.study.points import PointStudy, point_counts, study_points
 from rinow.study.surface import (
     PERCENTILES,
     SIGN,
-    SIGNED,
     CurvatureStudy,
     SurfaceStudy,
     field_unit,
@@ -71,7 +70,7 @@ def curvature(
     picture
         PNG file to draw four views to.
     report
-        HTML file to make: the surface and all fields, to turn and to read off in a browser, without a network.
+        HTML file to make: the surface or points and all fields, to turn and read off in a browser, without a network.
     up
         Axis that points up in the picture and in the report.
     unit
@@ -80,11 +79,11 @@ def curvature(
         Print one JSON object instead of a table.
     """
     if holds_points(mesh):
-        given = {"method": method != "auto", "quality": quality != "best", "picture": picture, "report": report}
+        given = {"method": method != "auto", "quality": quality != "best"}
         for option, is_given in given.items():
             if is_given:
                 raise InvalidInputError(f"--{option} needs faces, and {mesh} holds points only; leave it out.")
-        _curvature_of_points(mesh, output, radius, field, unit, json)
+        _curvature_of_points(mesh, output, radius, field, Views(picture, report, up), unit, json)
         return
     pictures, pages = [picture] if picture else [], [report] if report else []
     outputs = [*output, *pictures, *pages]
@@ -104,12 +103,7 @@ def curvature(
         for path in output:
             with working(f"writing {path.name}"):
                 notes += write_mesh(path, surface, study.vertex_data(field), units=study.units(), quality=field)
-        if picture:
-            with working(f"drawing {picture.name}"):
-                write_picture(picture, study, field, title=mesh.name, up=up)
-        if report:
-            with working(f"writing {report.name}"):
-                write_report(report, study, features, field=field, title=mesh.name, up=up)
+        Views(picture, report, up).write(study, features, field=field, title=mesh.name)
     if json:
         print_json(_record(mesh, study, mesh_counts(surface), field, outputs, notes))
     else:
@@ -117,11 +111,32 @@ def curvature(
         print_notes(tuple(notes))
 
 
+class Views(NamedTuple):
+    """The picture and the report that were asked for, if any, and the axis that points up in them."""
+
+    picture: Path | None
+    report: Path | None
+    up: str
+
+    def paths(self) -> list[Path]:
+        return [path for path in (self.picture, self.report) if path]
+
+    def write(self, study: SurfaceStudy | PointStudy, features: FeatureStudy | None, *, field: str, title: str) -> None:
+        if self.picture:
+            with working(f"drawing {self.picture.name}"):
+                write_picture(self.picture, study, field, title=title, up=self.up)
+        if self.report:
+            with working(f"writing {self.report.name}"):
+                write_report(self.report, study, features, field=field, title=title, up=self.up)
+
+
 def _curvature_of_points(
-    path: Path, output: tuple[Path, ...], radius: float | None, field: Field, unit: str, json: bool
+    path: Path, output: tuple[Path, ...], radius: float | None, field: Field, views: Views, unit: str, json: bool
 ) -> None:
     """The curvature at the points of a file without faces."""
     check_point_outputs(output, inputs=[path])
+    pictures, pages = [views.picture] if views.picture else [], [views.report] if views.report else []
+    check_outputs(views.paths(), inputs=[path, *output], pictures=pictures, pages=pages)
     with working(f"reading {path.name}"):
         points, notes = read_cloud(path)
     with working(f"curvature of {len(points):,} points"):
@@ -131,35 +146,30 @@ def _curvature_of_points(
         for target in output:
             with working(f"writing {target.name}"):
                 notes += write_points(target, points, study.vertex_data(field), study.units(), field)
+        views.write(study, None, field=field, title=path.name)
     if json:
-        print_json(_record(path, study, point_counts(points), field, list(output), list(notes)))
+        print_json(_record(path, study, point_counts(points), field, [*output, *views.paths()], list(notes)))
     else:
         print_study(str(path), study)
         print_notes(notes)
 
 
-def write_picture(path: Path, study: SurfaceStudy, field: str, *, title: str, up: str) -> None:
+def write_picture(path: Path, study: SurfaceStudy | PointStudy, field: str, *, title: str, up: str) -> None:
     """Draw one field of a study to a PNG file."""
     from rinow.io.atomic import replacing
-    from rinow.report.figures import surface_figure, write_surface_picture
+    from rinow.report.figures import write_surface_picture
+    from rinow.report.page import study_figure
 
     label = f"{study.units()[field].split(',')[0]}, in {field_unit(field, study.unit)}"
-    figure = surface_figure(
-        study.mesh.vertices,
-        study.mesh.faces,
-        study.fields(field)[field],
-        label=label,
-        signed=field in SIGNED,
-        up=up,
-        title=f"{title}: {study.mesh.n_vertices:,} vertices, method {study.curvature.method}",
-    )
+    title = f"{title}: {len(study.positions):,} {study.places}, method {study.curvature.method}"
+    figure = study_figure(study, field, label=label, up=up, title=title)
     with replacing(path) as temporary:
         write_surface_picture(temporary, figure)
 
 
 def write_report(
     path: Path,
-    study: SurfaceStudy,
+    study: SurfaceStudy | PointStudy,
     features: FeatureStudy | None = None,
     *,
     field: str = "gaussian",

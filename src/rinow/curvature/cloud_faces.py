@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.cloud_holes import taken
 from rinow.kernels import clouds
 
 __all__ = ["agreed_triangles"]
@@ -30,14 +31,15 @@ def agreed_triangles(points: Floats, star: Indices, counts: Indices, reach: Floa
     Returns
     -------
     faces : (n_faces, 3) ndarray of intp
-        No directed side is in two of them, so each edge is in two at most and these agree in orientation.
+        No directed side is in two of them, so each edge is in two at most and these agree in orientation; where those
+        of a point close around it there are no others.
 
     Notes
     -----
     A triangle of two successive neighbours is known to be Delaunay's if its circle, which may extend to its diameter
     from the point, lies within the reach.  Triangles in the stars of all three corners are taken first, then those of
-    two, then of one, small circles before large ones, unless they have a side in common, in its direction, with one
-    taken before: stars laid over different planes disagree about four points on a circle.
+    two, then of one, small circles before large ones, see `taken`: stars laid over different planes disagree about four
+    points on a circle.
     """
     n = len(points)
     owner, place = np.nonzero(np.arange(star.shape[1]) < counts[:, None])
@@ -50,8 +52,4 @@ def agreed_triangles(points: Floats, star: Indices, counts: Indices, reach: Floa
     corners = np.take_along_axis(corners, (first[:, None] + np.arange(3)) % 3, axis=1)
     sides = np.unique(corners[:, 0] * n + corners[:, 1], return_inverse=True)[1]
     _, one, votes = np.unique(sides * n + corners[:, 2], return_index=True, return_counts=True)
-    faces = corners[one[np.lexsort((diameters[one], -votes))]]
-    sides, numbers = np.unique(faces * n + np.roll(faces, -1, axis=1), return_inverse=True)
-    taken = np.empty(len(faces), np.bool_)
-    clouds.take_triangles(numbers.reshape(-1, 3), len(sides), taken)
-    return faces[taken]
+    return taken(n, corners[one[np.lexsort((diameters[one], -votes))]])

@@ -29,6 +29,8 @@ __all__ = ["cloud_estimate"]
 UNDECIDED = 1.5
 """Standard error times radius² above which nothing is known, as for metric spaces: points on surfaces stay below 1,
 those that fill a part of space have 2 to 25."""
+DETAIL_RINGS = 3
+"""Rings of neighbours that detail is told from."""
 
 
 def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
@@ -54,7 +56,8 @@ def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
     out[:, 0] *= shrinkage(samples, out)
     gaussian, mean, risk, reach, height = out[:, :5].T.copy()
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
-    spread = standard_errors(out, quality, cloud.at_border)
+    # With noise a tenth of the border is not seen, but its neighbours are.
+    spread = standard_errors(out, quality, rings_around(sheet, cloud.at_border, 1))
     principal = mean + half, mean - half, direction1, direction2
     fit = Estimate(gaussian, spread, reach, mean, *principal, np.sqrt(noise), sheet.spacing, risk, height)
     mesh = TriangleMesh(sheet.vertices, cloud.faces) if len(cloud.faces) else None
@@ -65,9 +68,28 @@ def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
         flatten(fit, flat_vertices(mesh) & told)
     if radius is not None:
         return fit
-    fit = fit if mesh is None else with_detail(mesh, fit)
+    fit = fit if mesh is None else _with_detail(cloud, mesh, fit)
     fit.gaussian[(fit.spread * fit.radius**2 > UNDECIDED) | _too_curved(cloud, fit)] = np.nan
     return fit
+
+
+def _with_detail(cloud: Cloud, mesh: TriangleMesh, fit: Estimate) -> Estimate:
+    """The estimate with detail; none at holes among triangles that show detail, and a wide spread around them.
+
+    There the stars of the points disagree, so that the rings around tell less than the comparison of scales believes.
+    """
+    detailed = with_detail(mesh, fit)
+    t = mesh.topology
+    at_hole = (t.vertex_is_boundary | ~t.vertex_is_used) & ~cloud.at_border
+    step = np.abs(detailed.gaussian - fit.gaussian)
+    has_detail = np.where(step > 0.0, 1.0, 0.0)
+    around = np.empty_like(has_detail)
+    stencils.ring_sums(has_detail, cloud.sheet.offsets, cloud.sheet.neighbours, around)
+    unknown = at_hole & (around > 0.5 * np.diff(cloud.sheet.offsets))
+    near = rings_around(cloud.sheet, at_hole, DETAIL_RINGS)
+    detailed.spread[near] = np.fmax(detailed.spread, step)[near]
+    detailed.gaussian[unknown] = np.nan
+    return detailed
 
 
 def _too_curved(cloud: Cloud, fit: Estimate) -> NDArray[np.bool_]:

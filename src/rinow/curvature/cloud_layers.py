@@ -19,6 +19,8 @@ Indices = NDArray[np.intp]
 
 NEAREST = 36
 """Points looked at around each one: five rows of points that are five times as near along a row as across."""
+LEAST, PART = 8, 4
+"""Of a small cloud a quarter is around each point, but at least eight: more would be on the other side, too."""
 LOOKED_AT = 72
 """Points among which these are sought where there is more than one sheet."""
 FAR, SPARSE = 3.0, 2.0
@@ -35,6 +37,8 @@ of a fifth of the spacing leaves half of it."""
 LEAST_CLAIMS, MOST_LOST = 18, 0.5
 """Points that must have a lost one on their sheets for it to be one of them, and the share of lost points from which
 nothing around is known."""
+BETWEEN = 0.25
+"""Share of its neighbours that gaps part from others from which on a point without such a gap is between two sheets."""
 
 
 class Near(NamedTuple):
@@ -64,7 +68,8 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     Returns
     -------
     near : Near
-        The 36 nearest points of the own sheet; rows of lost points are empty, but others have them in theirs.
+        The 36 nearest points of the own sheet, a quarter of all if these are few; rows of lost points are empty, but
+        others have them in theirs.
     is_stray : (n_points,) ndarray of bool
         The point is far from all others, or beside the quadric that fits those around it, alone or among points that
         are much rarer than those of the surface.
@@ -76,11 +81,13 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     A quadric of least moduli, which a few strays do not bend, goes through the points around each one, without itself.
     A curved surface of few points leaves residuals too; their median, over the points around, raises the limit.  Where
     one of the residuals is large, the sheet of the point is followed outwards, see `kernels.cloud_layers`; where no gap
-    parts it from other points the neighbours stay.  Nothing is examined where fewer than 36 points are looked at.
+    parts it from other points the neighbours stay, unless gaps part many of these: then the point has the neighbours
+    that have it on their sheets, or is lost.  Nothing is examined where fewer than 36 points are looked at.
     """
     near, n = nearest_points(points), len(points)
+    around = max(n // PART, LEAST)
     if near.indices.shape[1] < NEAREST:
-        return near, np.zeros(n, np.bool_), np.zeros(n, np.bool_)
+        return _first(near, around), np.zeros(n, np.bool_), np.zeros(n, np.bool_)
     close = near.distances[:, :N_NEAR].mean(axis=1)
     is_far = close > FAR * np.median(close[near.indices[:, :N_NEAR]], axis=1)
     normals, offsets, middles, largest = np.empty_like(points), np.empty(n), np.empty(n), np.empty(n)
@@ -93,20 +100,27 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     farthest = np.maximum(offsets, largest) / spacing
     is_unclear, is_lost = _follow_sheets(points, near, np.flatnonzero(farthest > SPACINGS), farthest > THICK)
     is_stray = is_far | (is_beside & (is_sparse | (is_alone & is_unclear)))
-    return near, is_stray, is_lost & ~is_stray
+    return _first(near, around), is_stray, is_lost & ~is_stray
+
+
+def _first(near: Near, count: int) -> Near:
+    return Near(near.distances[:, :count].copy(), near.indices[:, :count].copy())
 
 
 def _follow_sheets(points: Floats, near: Near, owners: Indices, is_thick: Bools) -> tuple[Bools, Bools]:
-    """Overwrite the rows of points beside another sheet by those on their own; which thick ones are on none, or all."""
+    """Overwrite the rows of points beside another sheet by those on their own; which are on none, or thick, or lost."""
     is_unclear, is_lost = np.zeros((2, len(points)), np.bool_)
     distances, indices = KDTree(points).query(points[owners], min(LOOKED_AT, len(points) - 1) + 1)
     distances, indices = distances[:, 1:].copy(), np.asarray(indices, np.intp)[:, 1:].copy()
     is_own, thickness = np.empty(indices.shape, np.bool_), np.empty(len(owners))
     cloud_layers.layers(owners, points, indices, distances, N_BLOCKS, is_own, thickness)
     is_unclear[owners] = (thickness > THICKEST) & is_thick[owners]
-    parted = ~is_own.all(axis=1)
-    owners, distances, indices, is_own = owners[parted], distances[parted], indices[parted], is_own[parted]
-    is_lost[owners] = is_unclear[owners]
+    is_parted = np.zeros(len(points), np.bool_)
+    is_parted[owners] = ~is_own.all(axis=1)
+    is_between = ~is_parted[owners] & (is_parted[near.indices[owners]].mean(axis=1) > BETWEEN)
+    is_lost[owners] = is_between | (is_unclear[owners] & is_parted[owners])
+    rows = np.flatnonzero(is_between | is_parted[owners])
+    owners, distances, indices, is_own = owners[rows], distances[rows], indices[rows], is_own[rows]
     _write(near, owners, distances, indices, is_own & ~is_lost[owners, None])
     _drop_strangers(points, near, owners)
     is_lost = _adopted(near, is_lost)

@@ -10,6 +10,7 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
 from rinow.curvature.cloud_faces import agreed_triangles
+from rinow.curvature.cloud_holes import filled
 from rinow.curvature.stencils import N_BLOCKS, NEEDLES
 from rinow.kernels import balls, clouds, stencils
 
@@ -59,7 +60,9 @@ def cloud_sheet(points: Floats, distances: Floats, near: Indices) -> Cloud:
         stencils.ring_directions(vectors, False, offsets, neighbours, normals)
         vectors = normals.copy()
     sheet = balls.Sheet(points, normals, offsets, neighbours, _spacing(points, distances, offsets, neighbours), True)
-    return Cloud(sheet, agreed_triangles(points, star, counts, distances[:, -1]), gaps > BORDER_GAP)
+    reach, at_border = distances[:, -1], gaps > BORDER_GAP
+    faces = agreed_triangles(points, star, counts, reach)
+    return Cloud(sheet, filled(points, normals, faces, reach, at_border), at_border)
 
 
 def _spacing(points: Floats, distances: Floats, offsets: NDArray[np.int32], neighbours: NDArray[np.int32]) -> Floats:

@@ -21,8 +21,10 @@ __all__ = ["point_cloud_curvature"]
 
 Floats = NDArray[np.float64]
 
-LEAST_POINTS = 7
-"""Points below which no quadric over a tangent plane is determined: it has six coefficients."""
+LEAST_POINTS = 24
+"""Points below which nothing is known: a quadric and its error need eight around each, which should be a third."""
+SAME = 2.0**-46
+"""Distance, over the extent, within which points differ by rounding only, as those of a pole do: they are one."""
 NOTE = (
     "The points have no orientation: the normals agree between neighbours and point away from the middle of each part, "
     "or upwards at its highest point."
@@ -35,7 +37,8 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     Parameters
     ----------
     points : (n_points, 3) array_like of float
-        Positions, in any unit of length.  Rows with nan or inf are allowed; repeated points get the same values.
+        Positions, in any unit of length.  Rows with nan or inf are allowed; points that are equal up to
+        rounding get the same values.
     radius : float, optional
         Radius of the balls, positive, in the unit of length; by default each ball and the order of its polynomial
         are chosen from the data, as for meshes.
@@ -70,15 +73,16 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
 
     Points far from all others, and points beside the quadric of least moduli through those around them, by eight
     standard deviations of the noise and a third of the spacing, alone or much rarer than those, are left out: they are
-    UNRESOLVED.  So are points whose standard error exceeds 1.5/radius²: where points fill a part of space, near
-    creases, and on most of a curve.
+    UNRESOLVED.  So are all of fewer than 24 points, and points whose standard error exceeds 1.5/radius²: where points
+    fill a part of space, near creases, and on most of a curve.
 
     Where a quadric does not fit all of the nearest points, that through the point is followed outwards, and only points
     on this sheet are its neighbours.  Sheets are told from each other at nearly all points if they are 1.5 spacings
-    apart in an even sample, two in a random one.  Nearer sheets are taken for one with noise, and so are their values.
+    apart in an even sample, two in a random one.  Of nearer ones more and more points are UNRESOLVED, and the spread of
+    the others holds what two sheets taken for one with detail are off.
 
     `spread` is that of the fits of `surface_curvature`.  With much noise a tenth of the points of a border are not seen
-    to be there, and their spread is somewhat too small.
+    to be there: they have the status OK, but the spread of a border, as all its neighbours do.
 
     Where no fit over a ball is determined, a quadric is fitted to two rings of neighbours.  Lengths from 1e-140 to
     1e140 neither overflow nor underflow.
@@ -98,16 +102,24 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
         if value.ndim or not 0.0 < value < np.inf:
             raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
     finite = np.isfinite(P).all(axis=1)
-    distinct, place = np.unique(P[finite], axis=0, return_inverse=True)
-    extent = float(np.ptp(distinct, axis=0).max()) if len(distinct) > 1 else 1.0
-    estimate, status, n_strays = _of_distinct(
-        (distinct - distinct[:1]) / extent, None if radius is None else float(radius) / extent
-    )
+    distinct, extent, place = _distinct(P[finite])
+    estimate, status, n_strays = _of_distinct(distinct, None if radius is None else float(radius) / extent)
     rows = np.full(len(P), len(distinct), np.intp)  # the last row is for the other points
-    rows[finite] = place.ravel()
+    rows[finite] = place
     result = relabelled(rescaled(assembled(estimate, status, "point_cloud"), 1.0 / extent), rows)
     strays = (f"{n_strays} points lie beside the surface of those around them and were left out (UNRESOLVED).",)
     return replace(result, notes=(NOTE, *strays[: bool(n_strays)]))
+
+
+def _distinct(points: Floats) -> tuple[Floats, float, NDArray[np.intp]]:
+    """Distinct points, in units of their extent; the extent; and the row of each point among them."""
+    if not len(points):
+        return points, 1.0, np.empty(0, np.intp)
+    low = points.min(axis=0)
+    extent = float((points - low).max()) or 1.0
+    units = (points - low) / extent
+    _, first, place = np.unique(np.rint(units / SAME), axis=0, return_index=True, return_inverse=True)
+    return units[first], extent, place.ravel()
 
 
 def _of_distinct(points: Floats, radius: float | None) -> tuple[Estimate, NDArray[np.uint8], int]:

@@ -182,14 +182,26 @@ def circle_diameters(points, triangles, out):
 
 
 @kernel
-def take_triangles(sides, n_sides, taken):
-    """Take triangles in their order unless a directed side of theirs, by its number, is in one taken before."""
-    used = np.zeros(n_sides, np.bool_)
+def take_triangles(triangles, sides, reverse, n_points, taken):
+    """Take triangles in their order unless one before has a directed side of theirs, or those before close at a corner.
+
+    `sides` numbers their directed sides, the i-th from corner i to the next one; `reverse` has the number of each in
+    the other direction.
+    """
+    used = np.zeros(reverse.shape[0], np.bool_)
+    n_taken, n_open = np.zeros(n_points, np.intp), np.zeros(n_points, np.intp)
     for f in range(sides.shape[0]):
-        a, b, c = sides[f, 0], sides[f, 1], sides[f, 2]
-        taken[f] = not (used[a] or used[b] or used[c])
+        taken[f] = True
+        for i in range(3):
+            v = triangles[f, i]
+            taken[f] &= not used[sides[f, i]] and (n_taken[v] == 0 or n_open[v] > 0)
         if taken[f]:
-            used[a] = used[b] = used[c] = True
+            for i in range(3):
+                v, w = triangles[f, i], triangles[f, (i + 1) % 3]
+                used[sides[f, i]] = True
+                step = -1 if used[reverse[sides[f, i]]] else 1
+                n_open[v], n_open[w] = n_open[v] + step, n_open[w] + step
+                n_taken[v] += 1
 
 
 @kernel

@@ -14,13 +14,15 @@ from string import Template
 from typing import Any
 
 from rinow._version import __version__
+from rinow.report.discs import squares
 from rinow.report.figures import surface_figure
 from rinow.report.scene import surface_scene
 from rinow.report.sections import sections
 from rinow.study.features import FeatureStudy
+from rinow.study.points import PointStudy
 from rinow.study.surface import FIELDS, SIGNED, SurfaceStudy, field_unit
 
-__all__ = ["surface_page", "write_surface_page"]
+__all__ = ["study_figure", "surface_page", "write_surface_page"]
 
 SCRIPTS = (
     "vendor/three.min.js",
@@ -38,7 +40,7 @@ PICTURE_DPI = 90
 
 
 def surface_page(
-    study: SurfaceStudy,
+    study: SurfaceStudy | PointStudy,
     features: FeatureStudy | None = None,
     *,
     title: str,
@@ -46,11 +48,11 @@ def surface_page(
     up: str = "z",
     made: datetime | None = None,
 ) -> str:
-    """A page that shows a surface and its curvature, complete in itself.
+    """A page that shows a surface or a cloud of points and its curvature, complete in itself.
 
     Parameters
     ----------
-    study : SurfaceStudy
+    study : SurfaceStudy or PointStudy
         Surface and curvature.
     features : FeatureStudy, optional
         Singular points of the same surface, drawn on demand.
@@ -79,19 +81,21 @@ def surface_page(
     >>> page.startswith("<!doctype html>"), "1/length²" in page
     (True, True)
     """
-    mesh = study.mesh
     scene = surface_scene(study, features, field=field, up=up)
     label = f"{FIELDS[field][0]}, in {field_unit(field, study.unit)}"
     if field in SIGNED:
         label += ", convex positive"
     style, scripts = _asset("page.css"), [_asset(name) for name in SCRIPTS]
-    summary = f"{mesh.n_vertices:,} vertices, {mesh.n_faces:,} faces, method {study.curvature.method}"
+    faces = f", {study.mesh.n_faces:,} faces" if isinstance(study, SurfaceStudy) else ""
+    summary = f"{len(study.positions):,} {study.places}{faces}, method {study.curvature.method}"
     time = (made or datetime.now(UTC)).strftime("%Y-%m-%d %H:%M %Z").strip()
     return Template(_asset("template.html")).substitute(
         policy=_policy(style, scripts),
         version=__version__,
         title=escape(title),
         summary=summary,
+        place=study.place,
+        places=study.places,
         picture=_still_picture(study, field, label, up),
         picture_text=escape(f"Four views coloured by the {label}"),
         style=style,
@@ -134,10 +138,26 @@ def _json(value: Any) -> str:
     return json.dumps(value, allow_nan=False, ensure_ascii=False).replace("<", "\\u003c")
 
 
-def _still_picture(study: SurfaceStudy, field: str, label: str, up: str) -> str:
+def study_figure(study: SurfaceStudy | PointStudy, field: str, *, label: str, up: str, title: str = "") -> Any:
+    """The picture of a field of a study, see `surface_figure`; points are drawn as squares."""
+    is_mesh = isinstance(study, SurfaceStudy)
+    vertices, faces, owner = (study.mesh.vertices, study.mesh.faces, None) if is_mesh else squares(study)
+    return surface_figure(
+        vertices,
+        faces,
+        study.fields(field)[field],
+        label=label,
+        areas=study.areas,
+        owner=owner,
+        signed=field in SIGNED,
+        up=up,
+        title=title,
+    )
+
+
+def _still_picture(study: SurfaceStudy | PointStudy, field: str, label: str, up: str) -> str:
     """The picture for printers and for browsers without WebGL, as an address that holds it."""
-    mesh, values = study.mesh, study.fields(field)[field]
-    figure = surface_figure(mesh.vertices, mesh.faces, values, label=label, signed=field in SIGNED, up=up)
+    figure = study_figure(study, field, label=label, up=up)
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=PICTURE_DPI)
     return f"data:image/png;base64,{base64.b64encode(buffer.getvalue()).decode('ascii')}"

@@ -17,12 +17,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.report.discs import framed, normals
 from rinow.report.figures import UNDEFINED_GREY, colour_scale
 from rinow.study.features import FeatureStudy
+from rinow.study.points import PointStudy
 from rinow.study.surface import FIELDS, SIGNED, STATUSES, SurfaceStudy, field_unit
 
 __all__ = ["Scene", "surface_scene"]
 
+Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
 POSITION_STEPS = 2**20 - 1
@@ -55,14 +58,14 @@ class Scene:
 
 
 def surface_scene(
-    study: SurfaceStudy, features: FeatureStudy | None = None, *, field: str = "gaussian", up: str = "z"
+    study: SurfaceStudy | PointStudy, features: FeatureStudy | None = None, *, field: str = "gaussian", up: str = "z"
 ) -> Scene:
-    """Pack a surface, its curvature and its singular points for a page.
+    """Pack a surface or a cloud of points, its curvature and its singular points for a page.
 
     Parameters
     ----------
-    study : SurfaceStudy
-        Surface and curvature.
+    study : SurfaceStudy or PointStudy
+        Surface and curvature; a cloud has points for faces, of one corner each, and normals up to sign.
     features : FeatureStudy, optional
         Singular points of the same surface.
     field : str
@@ -77,28 +80,29 @@ def surface_scene(
         would overflow or vanish), those of large meshes to `BITS_OF_LARGE`; status, nan and faces are exact.  Faces at
         non-finite positions are left out.
     """
-    mesh = study.mesh
-    shown = mesh.vertex_is_finite[mesh.faces].all(axis=1)
-    in_faces = np.zeros(mesh.n_vertices, np.bool_)
-    in_faces[mesh.faces[shown].ravel()] = True
-    origin, step = _grid(mesh.vertices[mesh.vertex_is_finite], mesh.vertices[in_faces])
-    positions = np.rint((np.where(mesh.vertex_is_finite[:, None], mesh.vertices, origin) - origin) / step)
+    is_finite: Bools = np.all(np.isfinite(study.positions), axis=1, keepdims=False)
+    shape, shown, hidden = _faces(study, is_finite) if isinstance(study, SurfaceStudy) else _points(study, is_finite)
+    origin, step = _grid(study.positions[is_finite], study.positions[shown])
+    positions = np.rint((np.where(is_finite[:, None], study.positions, origin) - origin) / step)
+    in_frame = positions[shown] if shown.any() else np.zeros((1, 3))
     fields = study.fields(field)
     arrays: dict[str, NDArray[Any]] = {
         "positions": positions.astype(np.uint32),
-        "faces": mesh.faces[shown].astype(np.uint32),
-        "turned": mesh.outward_flips[shown].astype(np.uint8),
+        **shape,
         "status": study.curvature.status,
-        **{name: compact(values) for name, values in {"areas": mesh.vertex_areas, **fields}.items()},
+        **{name: compact(values) for name, values in {"areas": study.areas, **fields}.items()},
         **_directions(study, origin),
         **(_lines_and_points(features) if features else {}),
     }
     entries, data = pack(arrays)
     header = {
         "arrays": entries,
-        "vertices": mesh.n_vertices,
-        "hidden_faces": int((~shown).sum()),
-        "precision": 2.0**-BITS_OF_LARGE if mesh.n_vertices >= LARGE else 2.0**-24,
+        "vertices": len(positions),
+        "place": study.place,
+        "places": study.places,
+        "frame": [in_frame.min(axis=0).tolist(), in_frame.max(axis=0).tolist()],
+        "hidden_faces": hidden,
+        "precision": 2.0**-BITS_OF_LARGE if len(positions) >= LARGE else 2.0**-24,
         "origin": origin.tolist(),
         "step": step,
         "field": field,
@@ -106,10 +110,27 @@ def surface_scene(
         "unit": study.unit,
         "undefined": [round(255 * c) for c in UNDEFINED_GREY],
         "statuses": STATUSES,
-        "fields": [_field(name, values, study.unit) for name, values in fields.items()],
+        "fields": [_field(name, values, study.areas, study.unit) for name, values in fields.items()],
         "maps": {name: _colour_map(name) for name in ("RdBu_r", "viridis")},
     }
     return Scene(header, data)
+
+
+def _faces(study: SurfaceStudy, is_finite: Bools) -> tuple[dict[str, NDArray[Any]], Bools, int]:
+    """Faces at finite positions, which vertices they have, and how many others there are."""
+    mesh = study.mesh
+    shown = is_finite[mesh.faces].all(axis=1)
+    in_faces = np.zeros(mesh.n_vertices, np.bool_)
+    in_faces[mesh.faces[shown].ravel()] = True
+    flips = mesh.outward_flips[shown].astype(np.uint8)
+    return {"faces": mesh.faces[shown].astype(np.uint32), "turned": flips}, in_faces, int((~shown).sum())
+
+
+def _points(study: PointStudy, is_finite: Bools) -> tuple[dict[str, NDArray[Any]], Bools, int]:
+    """Points at finite positions, their normals, and which of them are in the frame."""
+    rounded = np.rint(normals(study) * DIRECTION_STEPS).astype(np.int8)
+    shape = {"faces": np.flatnonzero(is_finite).astype(np.uint32), "normals": rounded}
+    return shape, framed(study), 0
 
 
 def _grid(finite: Floats, shown: Floats) -> tuple[Floats, float]:
@@ -178,16 +199,16 @@ def pack(arrays: Mapping[str, NDArray[Any]]) -> tuple[list[dict[str, Any]], str]
     return entries, base64.b64encode(gzip.compress(b"".join(blocks), COMPRESSION, mtime=0)).decode("ascii")
 
 
-def _directions(study: SurfaceStudy, origin: Floats) -> dict[str, NDArray[Any]]:
+def _directions(study: SurfaceStudy | PointStudy, origin: Floats) -> dict[str, NDArray[Any]]:
     """Principal directions at vertices all over the surface, rounded; nothing if no vertex has any."""
     both = {name: np.asarray(getattr(study.curvature, name)) for name in ("direction1", "direction2")}
     known = np.flatnonzero(np.isfinite(np.hstack(list(both.values()))).all(axis=1))
     if len(known) == 0:
         return {}
-    cell = float(np.sqrt(study.mesh.vertex_areas.sum() / MOST_DIRECTIONS))
+    cell = float(np.sqrt(study.areas.sum() / MOST_DIRECTIONS))
     chosen = known
     while len(chosen) > MOST_DIRECTIONS:
-        i, j, k = np.floor((study.mesh.vertices[known] - origin) / cell).astype(np.int64).T
+        i, j, k = np.floor((study.positions[known] - origin) / cell).astype(np.int64).T
         chosen = known[np.unique((i * 2**21 + j) * 2**21 + k, return_index=True)[1]]
         cell *= 1.2
     vertices = np.sort(chosen)
@@ -207,9 +228,9 @@ def _lines_and_points(study: FeatureStudy) -> dict[str, NDArray[Any]]:
     }
 
 
-def _field(name: str, values: Floats, unit: str) -> dict[str, Any]:
+def _field(name: str, values: Floats, areas: Floats, unit: str) -> dict[str, Any]:
     """Name, unit and colours of a field."""
-    scale = colour_scale(values, signed=name in SIGNED)
+    scale = colour_scale(values, areas, signed=name in SIGNED)
     return {
         "name": name,
         "title": FIELDS[name][0],

@@ -10,7 +10,8 @@ import numpy as np
 
 from rinow.report.scene import BITS_OF_LARGE, LARGE, POSITION_STEPS
 from rinow.study.features import FeatureStudy
-from rinow.study.surface import FIELDS, STATUSES, SurfaceStudy, field_unit, mesh_counts
+from rinow.study.points import PointStudy, point_counts
+from rinow.study.surface import FIELDS, STATUSES, CurvatureStudy, SurfaceStudy, field_unit, mesh_counts
 from rinow.study.totals import surface_totals
 
 __all__ = ["sections"]
@@ -31,19 +32,20 @@ FAULTS = (
 """Counts of a mesh that are told where they are not 0."""
 
 
-def sections(study: SurfaceStudy, features: FeatureStudy | None, *, version: str, made: str) -> str:
+def sections(study: SurfaceStudy | PointStudy, features: FeatureStudy | None, *, version: str, made: str) -> str:
     """All tables of the page, one `<section>` each.
 
     Parameters
     ----------
-    study : SurfaceStudy
+    study : SurfaceStudy or PointStudy
         Surface and curvature.
     features : FeatureStudy, optional
         Singular points of the same surface.
     version, made : str
         Version of rinow, and when the page was made.
     """
-    parts = [_totals(study), _statuses(study), *([_features(features)] if features else [])]
+    totals = _totals(study) if isinstance(study, SurfaceStudy) else _counts(study)
+    parts = [totals, _statuses(study), *([_features(features)] if features else [])]
     return "\n".join([*parts, _origin(study, version, made), _reading(study), _citation(version), _percentiles(study)])
 
 
@@ -84,13 +86,20 @@ def _totals(study: SurfaceStudy) -> str:
     return _section("Totals", _table([], cells, numbers=(1,)), text)
 
 
-def _statuses(study: SurfaceStudy) -> str:
-    n = study.mesh.n_vertices
+def _counts(study: PointStudy) -> str:
+    counts = {name.replace("_", " "): n for name, n in point_counts(study.points).items() if n or name == "points"}
+    text = "The points have no faces: nothing is known of the whole, such as its area and its Euler characteristic."
+    return _section("Totals", _table([], [(name, number(n)) for name, n in counts.items()], numbers=(1,)), text)
+
+
+def _statuses(study: CurvatureStudy) -> str:
+    n = len(study.curvature.status)
     rows = [
         (name, f"{count:,}", f"{100 * count / n:.3g} %", f'<span class="meaning">{STATUSES[name]}</span>')
         for name, count in study.status_counts().items()
     ]
-    return _section("Vertices by status", _table(["status", "vertices", "share", ""], rows, numbers=(1, 2)))
+    title = f"{study.places.capitalize()} by status"
+    return _section(title, _table(["status", study.places, "share", ""], rows, numbers=(1, 2)))
 
 
 def _features(study: FeatureStudy) -> str:
@@ -103,7 +112,7 @@ def _features(study: FeatureStudy) -> str:
     return _section("Singular features", _table(head, rows, numbers=(1, 2, 3, 4)), text)
 
 
-def _origin(study: SurfaceStudy, version: str, made: str) -> str:
+def _origin(study: CurvatureStudy, version: str, made: str) -> str:
     asked, radius = study.settings, study.settings.get("radius")
     used = study.curvature.method
     wish = asked.get("method", used)
@@ -120,17 +129,17 @@ def _origin(study: SurfaceStudy, version: str, made: str) -> str:
     return _section("How it was computed", _table([], [(a, escape(b)) for a, b in rows]), *map(escape, notes))
 
 
-def _reading(study: SurfaceStudy) -> str:
+def _reading(study: CurvatureStudy) -> str:
     digits = (
         f"fields rounded to {BITS_OF_LARGE} binary digits (1 in {2**BITS_OF_LARGE:,}; the files of rinow hold all)"
-        if study.mesh.n_vertices >= LARGE
+        if len(study.curvature.status) >= LARGE
         else "fields in single precision (float32, 1 in 16 million)"
     )
     texts = (
         "<b>Sign.</b> Convex with outward normal is positive; H is the mean of k1 and k2, and k1 ≥ k2.",
         f"<b>Unit.</b> Values are pointwise, not integrated: K in {escape(field_unit('gaussian', study.unit))}, "
         f"H, k1 and k2 in {escape(field_unit('mean', study.unit))}.",
-        f"<b>Spread.</b> {SPREAD}",
+        f"<b>Spread.</b> {SPREAD.replace('vertex', study.place)}",
         "<b>Undefined</b> is nan, drawn grey, with a status that says why; it is never a silent 0.",
         f"<b>Numbers of this page.</b> Positions are rounded to 1/{POSITION_STEPS:,} of the longest side; {digits}.",
     )
@@ -146,7 +155,7 @@ def _citation(version: str) -> str:
     )
 
 
-def _percentiles(study: SurfaceStudy) -> str:
+def _percentiles(study: CurvatureStudy) -> str:
     table = study.percentiles()
     heads = {"0": "least", "50": "median", "100": "greatest"}
     levels = [heads.get(p, f"{p} %") for p in next(iter(table.values()))]
@@ -155,7 +164,7 @@ def _percentiles(study: SurfaceStudy) -> str:
         for name, values in table.items()
     ]
     body = _table(["field", "unit", *levels], rows, numbers=range(2, 2 + len(levels)))
-    return _section("Values at the vertices that have one", body, kind="full")
+    return _section(f"Values at the {study.places} that have one", body, kind="full")
 
 
 def _section(title: str, table: str, *texts: str, kind: str = "") -> str:

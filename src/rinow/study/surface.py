@@ -74,7 +74,18 @@ class CurvatureStudy:
     unit: str = "length"
     seconds: dict[str, float] = field(default_factory=dict)
     settings: dict[str, str | float | None] = field(default_factory=dict)
+    place: ClassVar[str] = "vertex"
     places: ClassVar[str] = "vertices"
+
+    @property
+    def positions(self) -> Floats:
+        """(n, 3): where the values are."""
+        raise NotImplementedError
+
+    @property
+    def areas(self) -> Floats:
+        """(n,): area of the surface that each value stands for; 0 at positions that are not finite."""
+        raise NotImplementedError
 
     @contextmanager
     def timed(self, step: str) -> Generator[None]:
@@ -136,6 +147,16 @@ class SurfaceStudy(CurvatureStudy):
     """
 
     mesh: TriangleMesh = field(kw_only=True)
+
+    @property
+    def positions(self) -> Floats:
+        """(n_vertices, 3): the vertices of the mesh."""
+        return self.mesh.vertices
+
+    @property
+    def areas(self) -> Floats:
+        """(n_vertices,): a third of the area of the faces around each vertex."""
+        return self.mesh.vertex_areas
 
     @property
     def notes(self) -> tuple[str, ...]:

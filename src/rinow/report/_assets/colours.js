@@ -11,7 +11,7 @@ function fieldsOf(scene) {
   const maps = Object.fromEntries(Object.entries(scene.maps).map(([name, text]) => [name, mapOf(text)]));
   const fields = new Map();
   for (const f of scene.fields) fields.set(f.name, { ...f, values: scene.arrays[f.name], map: maps[f.map] });
-  const status = { name: "status", title: "status of the vertex", unit: "", values: scene.arrays.status };
+  const status = { name: "status", title: `status of the ${scene.place}`, unit: "", values: scene.arrays.status };
   fields.set("status", { ...status, categories: Object.keys(scene.statuses) });
   return fields;
 }

@@ -1,18 +1,10 @@
 "use strict";
 // Positions, normals and adjacency that drawing needs; quantities of the report come from the header and the arrays.
 
-/** Positions such that the faces fill a cube of side 1 about the origin, and what a unit of length is in it. */
-function unitPlaces(positions, faces, step) {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [0, 0, 0];
-  for (const v of faces) {
-    for (let c = 0; c < 3; c++) {
-      low[c] = Math.min(low[c], positions[3 * v + c]);
-      high[c] = Math.max(high[c], positions[3 * v + c]);
-    }
-  }
-  const middle = high.map((h, c) => (faces.length ? (low[c] + h) / 2 : 0));
-  const longest = faces.length ? Math.max(...high.map((h, c) => h - low[c]), 1) : 1;
+/** Positions such that the frame fills a cube of side 1 about the origin, and what a unit of length is in it. */
+function unitPlaces(positions, [low, high], step) {
+  const middle = high.map((h, c) => (low[c] + h) / 2);
+  const longest = Math.max(...high.map((h, c) => h - low[c]), 1);
   const places = new Float32Array(positions.length);
   for (let i = 0; i < positions.length; i++) places[i] = (positions[i] - middle[i % 3]) / longest;
   return [places, 1 / (longest * step)];

@@ -137,8 +137,8 @@ class Page {
       field.signed ? "Convex is positive." : "",
       "Histogram by area; light bars at its ends: beyond the colours.",
       this.undefinedVertices > 0
-        ? `Grey: undefined (nan) at ${this.undefinedVertices.toLocaleString("en")} vertices, ${percent(without)} of the area.`
-        : "Defined at every vertex.",
+        ? `Grey: undefined (nan) at ${this.undefinedVertices.toLocaleString("en")} ${scene.places}, ${percent(without)} of the area.`
+        : `Defined at every ${scene.place}.`,
     ];
     $("legend-note").textContent = parts.filter(Boolean).join(" ");
   }
@@ -157,12 +157,12 @@ class Page {
       item.append(swatch, `${code} ${name}`, count);
       $("categories").append(item);
     });
-    $("legend-note").textContent = "Number of vertices with each status; the table below says what each means.";
+    $("legend-note").textContent = `Number of ${this.scene.places} with each status; the table below says what each means.`;
   }
 
   show(name, shown) {
     $(name).checked = shown;
-    if (name === "edges") this.viewer?.showEdges(shown);
+    if (name === "edges" && this.scene.arrays.turned) this.viewer?.showEdges(shown);
     if (name === "smooth") this.viewer?.showSmooth(shown);
     if (name === "directions" && this.scene.arrays.direction_vertices) {
       this.viewer?.showDirections(shown, this.scene.arrays.areas);
@@ -186,7 +186,7 @@ class Page {
     if (vertex >= 0) {
       const f = this.field;
       const value = f.categories ? f.categories[f.values[vertex]] : `${short(f.values[vertex])} ${f.unit === "1" ? "" : f.unit}`;
-      $("tip").textContent = `vertex ${vertex}\n${SHORT_NAMES[f.name] ?? f.name} ${value}`;
+      $("tip").textContent = `${this.scene.place} ${vertex}\n${SHORT_NAMES[f.name] ?? f.name} ${value}`;
       const x = Math.min(at.offsetX + 16, $("view").clientWidth - $("tip").offsetWidth - 6);
       const y = at.offsetY > $("view").clientHeight - 80 ? at.offsetY - 58 : at.offsetY + 14;
       $("tip").style.transform = `translate(${x}px, ${y}px)`;
@@ -226,7 +226,7 @@ class Page {
       const x = origin[c] + step * arrays.positions[3 * vertex + c];
       return decimals >= 0 && decimals < 12 ? x.toFixed(decimals).replace("-", "−") : written(x, 6);
     });
-    this.line("vertex", `${vertex} (counted from 0)`);
+    this.line(this.scene.place, `${vertex} (counted from 0)`);
     this.line("x, y, z", name === "NONFINITE" ? "not finite" : `${place.join(", ")} ${unit}`, undefined, "place");
     for (const id of READOUT) {
       const f = this.fields.get(id);
@@ -278,7 +278,7 @@ async function start() {
     $("message").textContent = "";
     if (!page.viewer) {
       document.documentElement.className = "still data";
-      $("message").textContent = "The picture is still: this browser has no WebGL 2. Type a number of a vertex to read its values.";
+      $("message").textContent = "The picture is still: this browser has no WebGL 2. Type a number to read its values.";
     }
     document.documentElement.dataset.ready = "1";
   } catch (error) {

@@ -1,8 +1,9 @@
 "use strict";
-// The surface in three dimensions: drawing, moving, and which vertex is under the pointer.
+// The surface, or the points of a cloud, in three dimensions: drawing, moving, and which vertex is under the pointer.
 
 const HALF_DIAGONAL = 0.9; // of the unit cube, and a little more
 const MARGIN = 1.12; // around the surface at first
+const DISC_WIDTH = 1.6; // over the root of the area that a point stands for: few gaps
 const UP = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
 class Viewer {
@@ -12,7 +13,9 @@ class Viewer {
     this.arrays = scene.arrays;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.setClearColor(0, 0);
-    [this.places, this.unitsPerLength] = unitPlaces(scene.arrays.positions, scene.arrays.faces, scene.step);
+    [this.places, this.unitsPerLength] = unitPlaces(scene.arrays.positions, scene.frame, scene.step);
+    this.isCloud = !scene.arrays.turned;
+    this.uniforms = { smoothing: { value: 1 }, scale: { value: 1 } };
     this.tints = new Uint8Array(4 * scene.vertices).fill(255);
     this.world = new THREE.Scene();
     this.layers = new Map();
@@ -23,28 +26,37 @@ class Viewer {
     this.pickTarget = new THREE.WebGLRenderTarget(1, 1);
     this.pickMaterial = new THREE.ShaderMaterial({
       glslVersion: THREE.GLSL3, vertexShader: PICK_VERTEX, fragmentShader: PICK_FRAGMENT,
-      side: THREE.DoubleSide, blending: THREE.NoBlending,
+      side: THREE.DoubleSide, blending: THREE.NoBlending, uniforms: this.uniforms, defines: this.defines(),
     });
     this.reset(scene.up);
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     this.resize();
   }
 
+  defines() {
+    return this.isCloud ? { DISCS: "" } : {};
+  }
+
   makeSurface() {
-    const { faces, turned } = this.arrays;
+    const { faces, turned, normals, areas } = this.arrays;
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(this.places, 3));
     geometry.setAttribute("tint", new THREE.BufferAttribute(this.tints, 4, true));
-    geometry.setAttribute("smoothNormal", new THREE.BufferAttribute(vertexNormals(this.places, faces, turned), 4, true));
+    const smooth = this.isCloud ? [normals, 3] : [vertexNormals(this.places, faces, turned), 4];
+    geometry.setAttribute("smoothNormal", new THREE.BufferAttribute(...smooth, true));
+    if (this.isCloud) {
+      const sizes = Float32Array.from(areas, (area) => DISC_WIDTH * Math.sqrt(area) * this.unitsPerLength);
+      geometry.setAttribute("size", new THREE.BufferAttribute(sizes, 1));
+    }
     geometry.setIndex(new THREE.BufferAttribute(faces, 1));
     const material = new THREE.ShaderMaterial({
       glslVersion: THREE.GLSL3, vertexShader: SURFACE_VERTEX, fragmentShader: SURFACE_FRAGMENT,
-      side: THREE.DoubleSide, uniforms: { smoothing: { value: 1 } },
+      side: THREE.DoubleSide, uniforms: this.uniforms, defines: this.defines(),
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
-    const mesh = new THREE.Mesh(geometry, material);
-    mesh.frustumCulled = false;
-    return mesh;
+    const surface = this.isCloud ? new THREE.Points(geometry, material) : new THREE.Mesh(geometry, material);
+    surface.frustumCulled = false;
+    return surface;
   }
 
   makePoints(vertices, fragmentShader, size, ink = [0, 0, 0]) {
@@ -126,7 +138,7 @@ class Viewer {
   }
 
   showSmooth(smooth) {
-    this.surface.material.uniforms.smoothing.value = smooth ? 1 : 0;
+    this.uniforms.smoothing.value = smooth ? 1 : 0;
     this.draw();
   }
 
@@ -187,8 +199,11 @@ class Viewer {
   /** Look at a vertex from outside. */
   centre(vertex) {
     const distance = this.camera.position.distanceTo(this.controls.target);
-    const normal = new THREE.Vector3().fromArray(this.surface.geometry.attributes.smoothNormal.array, 4 * vertex);
-    if (normal.length() === 0) normal.copy(this.camera.position).sub(this.controls.target);
+    const { array, itemSize } = this.surface.geometry.attributes.smoothNormal;
+    const normal = new THREE.Vector3().fromArray(array, itemSize * vertex);
+    const towards = this.camera.position.clone().sub(this.controls.target);
+    if (normal.length() === 0) normal.copy(towards);
+    if (this.isCloud && normal.dot(towards) < 0) normal.negate(); // its sign is not known
     this.controls.target.fromArray(this.places, 3 * vertex);
     this.camera.position.copy(this.controls.target).addScaledVector(normal.normalize(), distance);
     this.controls.update();
@@ -225,7 +240,13 @@ class Viewer {
     this.camera.near = Math.max(0.003, distance - HALF_DIAGONAL);
     this.camera.far = distance + HALF_DIAGONAL;
     this.camera.updateProjectionMatrix();
+    this.scaleDiscs(this.canvas.height);
     this.renderer.render(this.world, this.camera);
+  }
+
+  /** Tell the shaders how many pixels a unit of length is at distance 1. */
+  scaleDiscs(height) {
+    this.uniforms.scale.value = height / (2 * Math.tan((this.camera.fov * Math.PI) / 360));
   }
 
   /** Picture of the present view. */
@@ -241,7 +262,7 @@ class Viewer {
     const bytes = new Uint8Array(4);
     this.renderer.readRenderTargetPixels(this.pickTarget, Math.floor(x), height - 1 - Math.floor(y), 1, 1, bytes);
     const last = (bytes[0] | (bytes[1] << 8) | (bytes[2] << 16) | (bytes[3] << 24)) - 1;
-    if (last < 0) return -1;
+    if (last < 0 || this.isCloud) return last;
     const ray = new THREE.Raycaster();
     ray.setFromCamera(new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
     return this.nearestCorner(last, ray.ray);
@@ -252,6 +273,7 @@ class Viewer {
     for (const object of hidden) object.visible = false;
     const material = this.surface.material;
     this.surface.material = this.pickMaterial;
+    this.scaleDiscs(this.pickTarget.height);
     this.renderer.setRenderTarget(this.pickTarget);
     this.renderer.clear();
     this.renderer.render(this.world, this.camera);
