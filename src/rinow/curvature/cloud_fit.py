@@ -54,7 +54,7 @@ def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
     out[:, 0] *= shrinkage(samples, out)
     gaussian, mean, risk, reach, height = out[:, :5].T.copy()
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
-    spread = standard_errors(out, quality)
+    spread = standard_errors(out, quality, cloud.at_border)
     principal = mean + half, mean - half, direction1, direction2
     fit = Estimate(gaussian, spread, reach, mean, *principal, np.sqrt(noise), sheet.spacing, risk, height)
     mesh = TriangleMesh(sheet.vertices, cloud.faces) if len(cloud.faces) else None

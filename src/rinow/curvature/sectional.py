@@ -40,6 +40,8 @@ QUARTIC = 3
 """Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
 PASSES = 2
 """Averages of squared differences over the centres around."""
+EDGE_CALIBRATION = 1.8
+"""The same at a boundary, where patches of any quality choose their order and radius by themselves."""
 APART = 3.0
 """Squared error over the variance between the patches of a vertex: they share most of their points, so that they err
 together more than they differ."""
@@ -148,7 +150,7 @@ def sectional(
     samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks)
     out, direction1, direction2, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
     out[:, 0] *= shrinkage(samples, out)
-    columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality])
+    columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
     gaussian, mean, risk, reach, height, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
     noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
@@ -204,9 +206,10 @@ def blended_patches(
     return out, direction1, direction2, noise
 
 
-def standard_errors(out: Floats, quality: Quality) -> Floats:
+def standard_errors(out: Floats, quality: Quality, at_boundary: NDArray[np.bool_]) -> Floats:
     """Standard errors of K (n,) by the risks of patches and by what they differ, in columns 2 and 5 of their means."""
-    return np.sqrt(quality.calibration**2 * out[:, 2] + APART * out[:, 5])
+    calibration = np.where(at_boundary, EDGE_CALIBRATION, quality.calibration)
+    return np.sqrt(calibration**2 * out[:, 2] + APART * out[:, 5])
 
 
 def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
