@@ -28,18 +28,19 @@ NO_PATCHES = patch_driver.Patches(np.empty(0), np.empty(0), 0.0, np.empty(0, np.
 
 @dataclass
 class Tasks:
-    """An executor, and the share of the work done so far."""
+    """An executor, the share of the work done so far, and the part of it that shares are of."""
 
     executor: Executor = field(default_factory=SerialExecutor)
     report: Callable[[float], object] = lambda share: None
     done: float = 0.0
+    part: float = 1.0
 
     def run(self, function: Callable[..., Any], parts: list[slice], share: float) -> Iterator[tuple[slice, Any]]:
         """Each part with the result of the function; `share` of all work is done afterwards."""
         results = iter(self.executor.map(function, parts))
         for part in parts:
             yield part, next(results)  # without a name, which would keep it while the next one is made
-            self.done += share / len(parts)
+            self.done += self.part * share / len(parts)
             self.report(self.done)
 
 
@@ -48,7 +49,7 @@ class Fitting:
     """One kernel call for a part of the centres; a value that any pool can send elsewhere."""
 
     task: int
-    is_mean: bool
+    errors_of: int
     reaches: Floats
     most: int
     sheet: balls.Sheet
@@ -63,7 +64,7 @@ class Fitting:
             c.noise[part],
         )  # fmt: skip
         patch_driver.treat_all(
-            self.task, self.is_mean, self.reaches, self.most, N_BLOCKS, own, self.sheet, tables, frames, out
+            self.task, self.errors_of, self.reaches, self.most, N_BLOCKS, own, self.sheet, tables, frames, out
         )
 
 

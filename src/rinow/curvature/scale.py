@@ -12,6 +12,7 @@ from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
+from rinow.kernels.patch_fits import GAUSSIAN, MEAN
 
 __all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "sample", "scales", "select", "windows"]
 
@@ -57,11 +58,11 @@ class Ladder(NamedTuple):
 
     def fitting(
         self, task: int, sheet: balls.Sheet, centres: Ints, frames: Floats, low: Ints, high: Ints, orders: Ints,
-        rows: NDArray[np.int64], noise: Floats, is_mean: bool = False,
+        rows: NDArray[np.int64], noise: Floats, errors_of: int = GAUSSIAN,
     ) -> Fitting:  # fmt: skip
         """Fits about some vertices to the balls of the given indices."""
         own = patch_driver.Centres(centres, frames, low, high, self.factors[centres], orders, rows, noise)
-        return Fitting(task, is_mean, self.reaches, self.most, sheet, own)
+        return Fitting(task, errors_of, self.reaches, self.most, sheet, own)
 
     def frames(self, sheet: balls.Sheet, centres: Ints, frames: Floats, choice: Choice, tasks: Tasks) -> Floats:
         """Frames of the tori that osculate the fits of a choice of radius and order."""
@@ -108,11 +109,11 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -
     m = len(centres)
     links = members_of_discs(sheet, centres, centres, np.full(m, AROUND * radius))
     n_plane = min(PILOT_RADII, len(ladder.reaches))
-    plane_logs, choice, _ = _examine(sheet, ladder, centres, flat_frames(sheet, centres), n_plane, True, links, tasks)
+    plane_logs, choice, _ = _examine(sheet, ladder, centres, flat_frames(sheet, centres), n_plane, MEAN, links, tasks)
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), choice, tasks)
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
-    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, len(ladder.reaches), False, links, tasks)
+    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, len(ladder.reaches), GAUSSIAN, links, tasks)
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius) ** 2)
     member_starts, members = members_of_discs(sheet, everything, centres, np.full(m, NEAR * radius), room)
@@ -127,16 +128,16 @@ def _examine(
     centres: Ints,
     frames: Floats,
     n_radii: int,
-    is_mean: bool,
+    errors_of: int,
     links: tuple[Ints, Ints],
     tasks: Tasks,
 ) -> tuple[Floats, Choice, Floats]:
     """Logarithmic risks (m, n_radii, 7), choices and noise of samples, whose noise is not known beforehand."""
     m = len(centres)
     low, high = np.zeros(m, np.int32), np.full(m, n_radii - 1, np.int32)
-    order = np.full(m, PILOT_ORDER if is_mean else MAX_ORDER, np.int32)
+    order = np.full(m, PILOT_ORDER if errors_of == MEAN else MAX_ORDER, np.int32)
     rows, spacing = np.arange(m + 1) * n_radii, sheet.spacing[centres]
-    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, is_mean)
+    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, errors_of)
     tables = fill_tables(fitting, False, tasks, 0.05)
     residuals = _averaged(tables.noise, spacing, -2, rows, low, high, links, 1).reshape(m, n_radii * N_ORDERS)
     noise = np.fmin.reduce(residuals.astype(np.float64), axis=1, initial=np.inf)
@@ -150,7 +151,7 @@ def _examine(
         tables.leverage, tables.jump, tables.second[:0], tables.noise[:0],
     )  # fmt: skip
     logs = np.full((m, n_radii, N_ORDERS), np.nan)
-    power = 2 if is_mean else 4
+    power = 2 if errors_of == MEAN else 4
     choice = _least(ladder, spacing, power, known, rows, low, high, links, 1, logs)
     return logs - power * np.log(spacing)[:, None, None], choice, noise * spacing**2
 
@@ -192,14 +193,14 @@ def chosen_at(vertices: Ints, samples: Samples, scales: Scales, logs: Floats) ->
 
 def select(
     sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, window: tuple[Ints, Ints, Ints, Floats],
-    links: tuple[Ints, Ints], passes: int, tasks: Tasks,
+    links: tuple[Ints, Ints], passes: int, errors_of: int, tasks: Tasks,
 ) -> Choice:  # fmt: skip
     """The least risk of each centre among the radii low..high and orders up to `top`, for known noise."""
     low, high, top, noise = window
     spacing = sheet.spacing[centres]
     rows = np.zeros(len(centres) + 1, np.int64)
     np.cumsum(high - low + 1, out=rows[1:])
-    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise)
+    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise, errors_of)
     place, no_logs = (rows, low, high, links, passes), np.empty((0, 0, 0))
     return _least(ladder, spacing, 4, fill_tables(fitting, True, tasks, 0.4), *place, no_logs)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, sc
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, rings_around, stencil_surface
 from rinow.curvature.strays import spikes, stray_vertices
-from rinow.kernels import balls, patch_driver, patches, quadrics, risks
+from rinow.kernels import balls, patch_driver, patch_fits, patches, quadrics, risks
 from rinow.mesh import TriangleMesh
 
 __all__ = [
@@ -40,15 +40,31 @@ QUARTIC = 3
 """Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
 PASSES = 2
 """Averages of squared differences over the centres around."""
-EDGE_CALIBRATION = 1.5
-"""Standard error at a boundary over that inside: biases are averaged over places that have points on all sides."""
+EDGE_CALIBRATION = 1.8
+"""The same at a boundary, where patches of any quality choose their order and radius by themselves."""
 APART = 3.0
 """Squared error over the variance between the patches of a vertex: they share most of their points, so that they err
 together more than they differ."""
-EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 4, 6
+EDGE_RINGS, EDGE_RADII = 2, 4
 """Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, worse placed."""
-AROUND = 2.2
-"""Radius of these centres around, in radii a patch covers."""
+EDGE_ORDER = 2
+"""Highest order of their first fits: what samples of the interior chose bends too freely with points on one side."""
+
+
+class Search(NamedTuple):
+    """How centres look for order and radius.
+
+    By the errors of K or of all curvatures (`patch_fits`), so many times, each from the frames of the fits chosen
+    before, and with squared biases of the centres within `around` times the radius a patch covers.
+    """
+
+    errors_of: int
+    rounds: int
+    around: float
+
+
+INSIDE, BESIDE = Search(patch_fits.GAUSSIAN, 1, 2.2), Search(patch_fits.BOTH, 2, 4.5)
+"""Centres inside and beside a boundary; there they lie in a strip and their first frames are poor."""
 
 
 class Quality(NamedTuple):
@@ -134,8 +150,7 @@ def sectional(
     samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks)
     out, direction1, direction2, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
     out[:, 0] *= shrinkage(samples, out)
-    errors = standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
-    columns = *out[:, :5].T, errors
+    columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
     gaussian, mean, risk, reach, height, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
     noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
@@ -173,15 +188,12 @@ def blended_patches(
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
     plane, choice = (chosen_at(centres, samples, between, logs) for logs in (samples.plane_logs, samples.torus_logs))
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
-    window = _widened(low[centres], high[centres] + np.where(beside, EDGE_RADII, 0), top[centres], len(ladder.reaches))
-    if quality.selects or beside.any():
-        own: Any = slice(None) if quality.selects else np.flatnonzero(beside)
-        guess = _safe(Choice(choice.radius[own], choice.order[own], choice.risk[own]), beside[own], ladder)
-        frames[own] = ladder.frames(sheet, centres[own], frames[own], guess, tasks)
-        links = _like(members_of_discs(sheet, centres[own], centres[own], AROUND * core[own]), beside[own])
-        own_window = window[0][own], window[1][own], window[2][own], at_centres[own]
-        found = select(sheet, ladder, centres[own], frames[own], own_window, links, PASSES, tasks)
-        choice.radius[own], choice.order[own], choice.risk[own] = found
+    choice = _safe(choice, beside, ladder)
+    high = high[centres] + np.where(beside, EDGE_RADII, 0)
+    window = *_widened(low[centres], high, top[centres], len(ladder.reaches)), at_centres
+    for search, is_own in ((INSIDE, ~beside & quality.selects), (BESIDE, beside)):
+        if is_own.any():
+            _look(search, np.flatnonzero(is_own), sheet, ladder, centres, core, window, frames, choice, tasks)
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
@@ -196,8 +208,8 @@ def blended_patches(
 
 def standard_errors(out: Floats, quality: Quality, at_boundary: NDArray[np.bool_]) -> Floats:
     """Standard errors of K (n,) by the risks of patches and by what they differ, in columns 2 and 5 of their means."""
-    errors = np.sqrt(quality.calibration**2 * out[:, 2] + APART * out[:, 5])
-    return np.where(at_boundary, EDGE_CALIBRATION * errors, errors)
+    calibration = np.where(at_boundary, EDGE_CALIBRATION, quality.calibration)
+    return np.sqrt(calibration**2 * out[:, 2] + APART * out[:, 5])
 
 
 def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
@@ -207,14 +219,21 @@ def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
     return choice._replace(radius=radius.astype(np.int32), order=order.astype(np.int32))
 
 
-def _like(links: tuple[Ints, Ints], kind: NDArray[np.bool_]) -> tuple[Ints, Ints]:
-    """Compressed rows without the members of the other kind than the owner of the row."""
-    starts, members = links
-    owners = np.repeat(np.arange(len(kind)), np.diff(starts))
-    keep = kind[owners] == kind[members]
-    new = np.zeros(len(starts), np.int32)
-    np.cumsum(np.bincount(owners[keep], minlength=len(kind)), out=new[1:])
-    return new, members[keep]
+def _look(
+    search: Search, own: NDArray[np.intp], sheet: balls.Sheet, ladder: Ladder, centres: Ints, core: Floats,
+    window: tuple[Ints, Ints, Ints, Floats], frames: Floats, choice: Choice, tasks: Tasks,
+) -> None:  # fmt: skip
+    """Let some of the centres choose by themselves, in place."""
+    few = centres[own]
+    own_window = window[0][own], window[1][own], window[2][own], window[3][own]
+    links = members_of_discs(sheet, few, few, search.around * core[own])
+    tasks.part = len(own) / len(centres) / search.rounds
+    for _ in range(search.rounds):
+        last = Choice(choice.radius[own], choice.order[own], choice.risk[own])
+        frames[own] = ladder.frames(sheet, few, frames[own], last, tasks)
+        found = select(sheet, ladder, few, frames[own], own_window, links, PASSES, search.errors_of, tasks)
+        choice.radius[own], choice.order[own], choice.risk[own] = found
+    tasks.part = 1.0
 
 
 def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints, Ints]:

@@ -50,7 +50,7 @@ class Work(NamedTuple):
 
 
 @inner
-def treat(i, task, is_mean, reaches, centres, sheet, tables, frames, out, work, values, gradients):
+def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients):
     """Grow the balls about one centre, fit, and write what the task asks for."""
     ball, fit = work.ball, work.fit
     v, frame, order = centres.vertices[i], centres.frames[i], centres.orders[i]
@@ -68,7 +68,8 @@ def treat(i, task, is_mean, reaches, centres, sheet, tables, frames, out, work, 
     asked = nested_fits.highest_order(size, asked)
     if task == TABLES:
         k1, k2, s2 = frame[9] * spacing, frame[10] * spacing, centres.noise[i] / (spacing * spacing)
-        patch_fits.write_rows(start, ball.points, size, own, asked, is_mean, k1, k2, s2, fit, tables, values, gradients)
+        share = patch_fits.shares(errors_of, k1, k2)
+        patch_fits.write_rows(start, ball.points, size, own, asked, share, k1, k2, s2, fit, tables, values, gradients)
     elif asked >= 2:
         nested_fits.place_origin(ball.points, size, own[0], fit)
         nested_fits.add_moments(ball.points, size, own, asked, fit)
@@ -84,12 +85,12 @@ def treat(i, task, is_mean, reaches, centres, sheet, tables, frames, out, work, 
 
 
 @parallel_kernel
-def treat_all(task, is_mean, reaches, most, n_blocks, centres, sheet, tables, frames, out):
+def treat_all(task, errors_of, reaches, most, n_blocks, centres, sheet, tables, frames, out):
     """Write rows of the tables, frames (n, 11) or values of patches for all centres."""
     n = len(centres.vertices)
     for block in prange(n_blocks):
         ball, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(len(reaches))
         work = Work(ball, fit, np.empty(TERMS[MAX_ORDER]))
-        values, gradients = np.empty(MAX_ORDER + 1), np.empty((MAX_ORDER + 1, 3))
+        values, gradients = np.empty((MAX_ORDER + 1, 2)), np.empty((MAX_ORDER + 1, 2, 3))
         for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            treat(i, task, is_mean, reaches, centres, sheet, tables, frames, out, work, values, gradients)
+            treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients)

@@ -12,6 +12,10 @@ from rinow.kernels.osculating_torus import offset_forms
 
 N_BIASES = N_ORDERS - 2
 """Orders whose bias is seen by comparison with the order two above."""
+GAUSSIAN, MEAN, BOTH = 0, 1, 2
+"""Whose errors the tables hold: of K, of H, or the root of the squares of those of K and of H times the curvedness of
+the torus.  Both together are less often small by chance than either, and K alone tells no error of a minimal surface
+that bends it alike in all directions."""
 STEEP = 0.3
 """Largest squared slope of a fit over its torus: a steeper one has a curvature, and an error, near 0 by its volume."""
 
@@ -19,7 +23,7 @@ STEEP = 0.3
 class Tables(NamedTuple):
     """One row for each centre and radius of its window, lengths in the spacing of the centre.
 
-    variance (T, 7): of the curvature, nan without a fit; bias (T, 5): squared differences to the order two above;
+    variance (T, 7): of the curvatures, nan without a fit; bias (T, 5): squared differences to the order two above;
     bias_variance (T, 5): their variances; leverage (T, 7): points times variance of the mean curvature for unit noise;
     jump (T, 7): squared differences to the quadric of the least ball that also has order 4, nan before it;
     second (T, 7) and noise (T, 7), or no rows: variance of second order and residual variance, for unknown noise.
@@ -54,7 +58,7 @@ def curvature_and_gradients(jet, k1, k2):
 @inner
 def quadratic_form(g, c):
     """g^T C g for the covariances C11, C12, C13, C22, C23, C33."""
-    a, b, d = g
+    a, b, d = g[0], g[1], g[2]
     total = a * a * c[0] + b * b * c[3] + d * d * c[5] + 2.0 * (a * b * c[1] + a * d * c[2] + b * d * c[4])
     return max(total, 0.0)
 
@@ -73,7 +77,35 @@ def write_no_row(t, tables):
 
 
 @inner
-def write_row(t, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients):
+def shares(errors_of, k1, k2):
+    """Factors of K and of H in the errors asked for."""
+    if errors_of == MEAN:
+        return 0.0, 1.0
+    return 1.0, (math.sqrt(0.5 * (k1 * k1 + k2 * k2)) if errors_of == BOTH else 0.0)
+
+
+@inner
+def write_weighted(gaussian, mean, of_gaussian, of_mean, share, values, gradients):
+    """Write K and H and their gradients times their shares."""
+    values[0], values[1] = share[0] * gaussian, share[1] * mean
+    for k in range(3):
+        gradients[0, k], gradients[1, k] = share[0] * of_gaussian[k], share[1] * of_mean[k]
+
+
+@inner
+def sum_of_forms(gradients, c):
+    """Variance of both by the covariances of the second derivatives."""
+    return quadratic_form(gradients[0], c) + quadratic_form(gradients[1], c)
+
+
+@inner
+def squared_difference(a, b, first, second):
+    """Squared distance of (a, b) from the pair of another fit."""
+    return (a - first) ** 2 + (b - second) ** 2
+
+
+@inner
+def write_row(t, count, top, share, k1, k2, s2, fit, tables, values, gradients):
     """Write one row of the tables from the orders 2..top of one ball, for noise of variance s2."""
     known = tables.second.shape[0] == 0
     write_no_row(t, tables)
@@ -81,15 +113,12 @@ def write_row(t, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients
         i = d - 2
         jet, c = fit.jets[d], fit.covariances[d]
         gaussian, mean, of_gaussian, of_mean, factor = curvature_and_gradients(jet, k1, k2)
-        values[d], gradient = (mean, of_mean) if is_mean else (gaussian, of_gaussian)
-        gradients[d, 0], gradients[d, 1], gradients[d, 2] = gradient
+        write_weighted(gaussian, mean, of_gaussian, of_mean, share, values[d], gradients[d])
         if not jet[1] * jet[1] + jet[2] * jet[2] <= STEEP:
             values[d] = np.nan
             continue
-        linear = s2 * quadratic_form(gradient, c)
-        second = 0.0
-        if not is_mean:
-            second = (s2 * factor) ** 2 * (c[0] * c[5] + c[2] * c[2] + 2.0 * c[3] * c[3])
+        linear = s2 * sum_of_forms(gradients[d], c)
+        second = (share[0] * s2 * factor) ** 2 * (c[0] * c[5] + c[2] * c[2] + 2.0 * c[3] * c[3])
         tables.variance[t, i] = linear + second if known else linear
         tables.leverage[t, i] = count * quadratic_form(of_mean, c)
         if not known:
@@ -98,19 +127,18 @@ def write_row(t, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients
             enough = spare >= max(4, nested_fits.TERMS[d] // 2)
             tables.noise[t, i] = fit.residuals[d] / spare if enough else np.nan
     for d in range(2, top - 1):
-        if not math.isnan(values[d]) and not math.isnan(values[d + 2]):
+        if not math.isnan(values[d, 0]) and not math.isnan(values[d + 2, 0]):
             above, below = fit.covariances[d + 2], fit.covariances[d]
-            gradient = (gradients[d, 0], gradients[d, 1], gradients[d, 2])
-            v = s2 * max(quadratic_form(gradient, above) - quadratic_form(gradient, below), 0.0)
-            e = values[d] - values[d + 2]
+            v = s2 * max(sum_of_forms(gradients[d], above) - sum_of_forms(gradients[d], below), 0.0)
+            e2 = squared_difference(values[d, 0], values[d, 1], values[d + 2, 0], values[d + 2, 1])
             tables.bias_variance[t, d - 2] = v
-            tables.bias[t, d - 2] = e * e - (v if known else 0.0)
+            tables.bias[t, d - 2] = e2 - (v if known else 0.0)
 
 
 @inner
-def write_rows(t, points, n, reaches, order, is_mean, k1, k2, s2, fit, tables, values, gradients):
+def write_rows(t, points, n, reaches, order, share, k1, k2, s2, fit, tables, values, gradients):
     """Write one row for each of some nested balls from row t on; of one-sided ones each has an origin of its own."""
-    before, reference, apart = 0.0, np.nan, False
+    before, apart, first, second = 0.0, False, np.nan, np.nan
     if order >= 2:
         apart = nested_fits.place_origin(points, n, reaches[-1], fit)
         if not apart:
@@ -127,8 +155,8 @@ def write_rows(t, points, n, reaches, order, is_mean, k1, k2, s2, fit, tables, v
             continue
         before = count
         top = nested_fits.fit_orders(shell, reaches[k], top, fit)
-        write_row(t + k, count, top, is_mean, k1, k2, s2, fit, tables, values, gradients)
-        if math.isnan(reference) and not math.isnan(tables.bias[t + k, 0]):
-            reference = values[2]
+        write_row(t + k, count, top, share, k1, k2, s2, fit, tables, values, gradients)
+        if math.isnan(first) and not math.isnan(tables.bias[t + k, 0]):
+            first, second = values[2, 0], values[2, 1]
         for d in range(2, top + 1):
-            tables.jump[t + k, d - 2] = (values[d] - reference) ** 2
+            tables.jump[t + k, d - 2] = squared_difference(values[d, 0], values[d, 1], first, second)
