@@ -30,6 +30,8 @@ the points they do not.  The polynomials are the same.
 ROOMY = 2.0
 """Points over unknowns below which a fit may be loose beside its centre."""
 CROWD = int(ROOMY * TERMS[MAX_ORDER])
+ROUNDING = 1e-14
+"""Share of the squared offsets below which what a fit leaves of them is rounding, another one in another order of sums."""
 SPARE, SURPLUS = 2, 1.25
 """An order needs SPARE more points than unknowns, and above 2 also SURPLUS as many."""
 
@@ -262,7 +264,7 @@ def fit_orders(shell, reach, order, work):
             s *= s
             cov[0], cov[1], cov[2] = 4.0 * s * v33, 2.0 * s * v34, 4.0 * s * v35
             cov[3], cov[4], cov[5] = s * v44, 2.0 * s * v45, 4.0 * s * v55
-            work.residuals[degree] = max(left, 0.0)
+            work.residuals[degree] = max(left, ROUNDING * work.squares[shell])
             degree += 1
     return order
 
