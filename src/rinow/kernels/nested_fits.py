@@ -30,8 +30,8 @@ the points they do not.  The polynomials are the same.
 ROOMY = 2.0
 """Points over unknowns below which a fit may be loose beside its centre."""
 CROWD = int(ROOMY * TERMS[MAX_ORDER])
-ROUNDING = 1e-14
-"""Share of the squared offsets below which what a fit leaves of them is rounding, another one in another order of sums."""
+ROUNDING = 1e-15
+"""Share of the squared offsets below which what a fit leaves of them is rounding, other in another order of sums."""
 SPARE, SURPLUS = 2, 1.25
 """An order needs SPARE more points than unknowns, and above 2 also SURPLUS as many."""
 
