@@ -38,8 +38,8 @@ def test_other_components_change_nothing(noise, quality):
     shape = shapes.noisy(shapes.irregular_torus(1000), noise)
     other = shapes.irregular_ellipsoid(8300, axes=(1.0, 1.0, 6.0))
     whole = surface_curvature((shape.vertices, shape.faces), quality=quality)
-    for size in (20.0, 0.01):  # far away, or inside the tube
-        both = shapes.union(shape, other._replace(vertices=size * other.vertices), offset=(200 * (size > 1) + 1.0, 0, 0))
+    for size, x in ((20.0, 200.0), (0.01, 1.0)):  # far away, and inside the tube
+        both = shapes.union(shape, other._replace(vertices=size * other.vertices), offset=(x, 0.0, 0.0))
         c = surface_curvature((both.vertices, both.faces), quality=quality)
         # Nothing but the order of sums changes.  Without noise the standard error is one of rounding in part.
         assert largest_change(c, whole, 1000) < (1e-12 if noise else 1e-7)
