@@ -9,6 +9,7 @@ import numpy as np
 from rinow.curvature.estimate import Estimate, Floats
 from rinow.curvature.intrinsic import intrinsic_curvature
 from rinow.curvature.sectional import QUALITIES, sectional
+from rinow.curvature.stencils import ring_means
 from rinow.curvature.unresolved import with_detail
 from rinow.kernels import curves, monge
 from rinow.mesh import TriangleMesh
@@ -17,8 +18,9 @@ __all__ = ["auto"]
 
 QUIET = 1e-3
 """Noise of the positions, in spacings, up to which edge lengths may tell more than positions."""
-WORTH = {"best": 0.02, "fast": 0.3}
-"""Share of the vertices that must be able to gain before the edge lengths are examined."""
+WORTH, PASSES = {"best": 0.2, "fast": 0.3}, 10
+"""Share of the vertices around that must be able to gain before the edge lengths are examined, and the averages over
+rings of neighbours by which it is told: some hundred vertices decide together."""
 RESOLVED, FLAT = 3e-4, 1e-3
 """Expected error of K, in units of the larger squared curvature, but at least (FLAT/spacing)², below which edge lengths
 have nothing to add."""
@@ -34,7 +36,7 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     mesh : TriangleMesh
         The surface.
     quality : {"best", "fast"}, optional
-        With "fast" fewer radii compete, and edge lengths only where much of the mesh may gain.
+        With "fast" fewer radii compete, and edge lengths only where many of the vertices around may gain.
     **options
         As for `sectional`.
 
@@ -55,9 +57,9 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     Where fits call detail noise that rings of neighbouring vertices have in common, estimates from one to three rings
     are taken (`rinow.curvature.unresolved`).
 
-    Edge lengths are examined only if this last term leaves room for a gain at some two percent of the vertices (with
-    "fast", a third), if fits are not accurate to the fourth digit anyway, and if the positions have next to no noise;
-    with noise the fits, which average over more data, win in any case.
+    Edge lengths are examined only where this last term leaves room for a gain at a fifth of the vertices around (with
+    "fast", a third), where fits are not accurate to the fourth digit anyway, and where the positions have next to no
+    noise; with noise the fits, which average over more data, win in any case.
     """
     estimate = sectional(mesh, quality=quality, **options)
     if options.get("radius") is not None:
@@ -73,7 +75,10 @@ def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> 
     largest = np.fmax(np.fmax(np.abs(k1), np.abs(k2)), FLAT / spacing)
     hopeful = (risk > np.fmax(chords, (RESOLVED * largest**2) ** 2)) & (noise < QUIET * spacing)
     hopeful &= ~mesh.topology.vertex_is_boundary
-    if np.count_nonzero(hopeful) < WORTH[quality] * mesh.n_vertices:
+    if not hopeful.any():
+        return estimate
+    hopeful &= ring_means(mesh, hopeful.astype(np.float64), PASSES) > WORTH[quality]
+    if not hopeful.any():
         return estimate
     with np.errstate(divide="ignore", invalid="ignore"):
         found = intrinsic_curvature(mesh, most_steps=LARGEST_BALL)

@@ -17,6 +17,7 @@ from rinow.curvature.length_noise import LengthNoise
 from rinow.curvature.powers import LADDER, ORDER, REFERENCE, Powers, combination
 from rinow.curvature.unseen import unseen_error
 from rinow.kernels import patch_order
+from rinow.kernels.risks import CLEAR
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = ["IntrinsicCurvature", "intrinsic", "intrinsic_curvature"]
@@ -174,7 +175,7 @@ def _shrink(best: IntrinsicCurvature, flow: CurvatureFlow) -> None:
     total = flow.means(best.gaussian**2, SHRINK_PASSES)
     error = flow.means(np.where(np.isfinite(risk), np.minimum(risk, total), np.nan), SHRINK_PASSES)
     with np.errstate(all="ignore"):
-        best.gaussian[:] *= np.where(total > 0.0, np.maximum(1.0 - error / total, 0.0), 1.0)
+        best.gaussian[:] *= np.where(total > 0.0, np.clip((1.0 - error / total) / (1.0 - CLEAR), 0.0, 1.0), 1.0)
 
 
 def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats) -> Iterator[Candidate]:

@@ -23,7 +23,7 @@ Scales = tuple[Floats, Floats, Floats]
 PILOT_RADII, PILOT_ORDER = 10, 6
 """Balls and orders of the fits over the tangent plane."""
 SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
-"""Radius a sample covers, in spacings, for meshes up to so many vertices: with and without refinement."""
+"""Radius a sample covers, in spacings, for surfaces up to so many vertices: with and without refinement."""
 RESOLVED = 0.1
 """Curvature, over the inverse spacing, up to which a mesh resolves its surface: large balls miss nothing there."""
 ROUNDING = 1e-15
@@ -99,15 +99,18 @@ class Samples(NamedTuple):
     spacing: Floats
 
 
-def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -> Samples:
-    """Examine all balls and orders at a sample of the vertices."""
+def sample(
+    sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, sizes: NDArray[np.intp] | None = None
+) -> Samples:
+    """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices."""
     from scipy.sparse import csr_array
 
     n = len(sheet.vertices)
-    radius = next(fine if is_refined else coarse for size, fine, coarse in SAMPLE_SPACINGS if n <= size)
-    centres = cover(sheet, np.full(n, radius))
-    m = len(centres)
-    links = members_of_discs(sheet, centres, centres, np.full(m, AROUND * radius))
+    rows = np.searchsorted([size for size, _, _ in SAMPLE_SPACINGS], n if sizes is None else sizes)
+    reach = np.array([fine if is_refined else coarse for _, fine, coarse in SAMPLE_SPACINGS])[rows]
+    centres = cover(sheet, np.broadcast_to(reach, n))
+    m, radius = len(centres), np.broadcast_to(reach, n)[centres]
+    links = members_of_discs(sheet, centres, centres, AROUND * radius)
     n_plane = min(PILOT_RADII, len(ladder.reaches))
     plane_logs, choice, _ = _examine(sheet, ladder, centres, flat_frames(sheet, centres), n_plane, MEAN, links, tasks)
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), choice, tasks)
@@ -115,8 +118,8 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks) -
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
     torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, len(ladder.reaches), GAUSSIAN, links, tasks)
     everything = np.arange(n, dtype=np.int32)
-    room = int(DENSE * (NEAR * radius) ** 2)
-    member_starts, members = members_of_discs(sheet, everything, centres, np.full(m, NEAR * radius), room)
+    room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
+    member_starts, members = members_of_discs(sheet, everything, centres, NEAR * radius, room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
     return Samples(starts, near, member_starts, members, plane_logs, torus_logs, choice, noise, sheet.spacing[centres])
@@ -139,8 +142,9 @@ def _examine(
     rows, spacing = np.arange(m + 1) * n_radii, sheet.spacing[centres]
     fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, errors_of)
     tables = fill_tables(fitting, False, tasks, 0.05)
-    residuals = _averaged(tables.noise, spacing, -2, rows, low, high, links, 1).reshape(m, n_radii * N_ORDERS)
-    noise = np.fmin.reduce(residuals.astype(np.float64), axis=1, initial=np.inf)
+    residuals = np.empty((m, n_radii * N_ORDERS))
+    risks.median_rows(tables.noise.reshape(residuals.shape) * spacing[:, None] ** 2, links[1], links[0], residuals)
+    noise = np.fmin.reduce(residuals, axis=1, initial=np.inf) / spacing**2
     noise[noise == np.inf] = 0.0
     noise = np.maximum(noise, ROUNDING**2)
     s2 = np.repeat(noise, n_radii)[:, None]

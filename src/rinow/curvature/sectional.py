@@ -147,7 +147,9 @@ def sectional(
         tasks.report = lambda share: progress(int(min(share, 0.99) * n), n)
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
     at_edge = rings_around(mesh.topology, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
-    samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks)
+    component = mesh.topology.components
+    sizes = np.bincount(component + 1)[component + 1][index]
+    samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks, sizes)
     out, direction1, direction2, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
     out[:, 0] *= shrinkage(samples, out)
     columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])

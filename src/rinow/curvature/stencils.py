@@ -9,7 +9,7 @@ from rinow.kernels import balls, monge, stencils
 from rinow.mesh import TriangleMesh
 from rinow.topology import Topology
 
-__all__ = ["N_BLOCKS", "empty_frames", "local_spacing", "rings_around", "stencil_surface"]
+__all__ = ["N_BLOCKS", "empty_frames", "local_spacing", "ring_means", "rings_around", "stencil_surface"]
 
 N_BLOCKS = 16
 """Pieces a kernel cuts its vertices into; each has scratch of its own."""
@@ -59,6 +59,17 @@ def _ring_sums(mesh: TriangleMesh, values: NDArray[np.float64]) -> NDArray[np.fl
     sums = np.empty(mesh.n_vertices)
     stencils.ring_sums(values, mesh.topology.neighbour_offsets, mesh.topology.neighbours, sums)
     return sums
+
+
+def ring_means(
+    mesh: TriangleMesh, values: NDArray[np.float64], passes: int, *, itself: bool = True
+) -> NDArray[np.float64]:
+    """Means over each vertex and its neighbours, or the neighbours alone, taken `passes` times."""
+    count = np.maximum(np.diff(mesh.topology.neighbour_offsets) + (1 if itself else 0), 1)
+    for _ in range(passes):
+        sums = _ring_sums(mesh, values)
+        values = (sums if itself else sums - values) / count
+    return values
 
 
 def rings_around(graph: Topology | balls.Sheet, marked: NDArray[np.bool_], n_rings: int) -> NDArray[np.bool_]:

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from rinow.curvature.angle_defect import angle_defect, longest_edges, ring_deviations
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.stencils import N_BLOCKS, empty_frames, stencil_surface
-from rinow.kernels import quadrics, ring_jets, stencils
+from rinow.curvature.stencils import N_BLOCKS, empty_frames, ring_means, stencil_surface
+from rinow.kernels import quadrics, ring_jets
 from rinow.mesh import TriangleMesh
 
 __all__ = ["single_rings", "with_detail"]
@@ -111,8 +111,8 @@ def _excess(mesh: TriangleMesh, gaussian: Floats) -> Floats:
     areas, whole = mesh.vertex_areas, 2.0 * np.pi
     known = np.isfinite(gaussian) & mesh.topology.vertex_is_manifold & ~mesh.topology.vertex_is_boundary
     excess = np.where(known, np.clip(gaussian * areas, -whole, whole) - mesh.vertex_angle_defects, 0.0)
-    area = _ring_means(mesh, np.where(known, areas, 0.0), PASSES)
-    return np.divide(_ring_means(mesh, excess, PASSES), area, out=np.zeros_like(area), where=area > 0.0)
+    area = ring_means(mesh, np.where(known, areas, 0.0), PASSES)
+    return np.divide(ring_means(mesh, excess, PASSES), area, out=np.zeros_like(area), where=area > 0.0)
 
 
 def single_rings(mesh: TriangleMesh) -> Floats:
@@ -144,8 +144,8 @@ def _common_share(
     A residual much below `least` is in common to none.
     """
     r = np.where(np.isfinite(residual) & ~mesh.topology.vertex_is_boundary, residual, 0.0)
-    product, square = r * _ring_means(mesh, r, 1, itself=False), r * r + least * least
-    near = _share_of(correlations, _ring_means(mesh, product, PASSES), _ring_means(mesh, square, PASSES))
+    product, square = r * ring_means(mesh, r, 1, itself=False), r * r + least * least
+    near = _share_of(correlations, ring_means(mesh, product, PASSES), ring_means(mesh, square, PASSES))
     component = mesh.topology.components + 1
     whole = _share_of(correlations, *(np.bincount(component, x).astype(np.float64) for x in (product, square)))
     return np.minimum(near, np.round(STEPS * whole[component]) / STEPS)
@@ -162,17 +162,6 @@ def _share_of(correlations: tuple[float, float], covariance: Floats, variance: F
     none, full = correlations
     correlation = np.divide(covariance, variance, out=np.full_like(variance, none), where=variance > 0.0)
     return np.clip((correlation - none) / (full - none), 0.0, 1.0)
-
-
-def _ring_means(mesh: TriangleMesh, values: Floats, passes: int, *, itself: bool = True) -> Floats:
-    """Means over each vertex and its neighbours, or the neighbours alone, taken `passes` times."""
-    t = mesh.topology
-    count = np.maximum(np.diff(t.neighbour_offsets) + (1 if itself else 0), 1)
-    for _ in range(passes):
-        sums = np.empty_like(values)
-        stencils.ring_sums(values, t.neighbour_offsets, t.neighbours, sums)
-        values = (sums if itself else sums - values) / count
-    return values
 
 
 def _times(share: Floats, step: Floats) -> Floats:

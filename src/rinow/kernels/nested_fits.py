@@ -39,6 +39,8 @@ ROWS, STRIDE = 48, 56
 """Rows of a factor, in fours, of which the last ones are spare, and columns: monomials, targets, data, spare ones."""
 PLACES, COLUMNS = 92, 280
 """The most points of a crowd, rounded up to AT_ONCE, and second derivatives there, three each, rounded up to LANES."""
+ROUNDING = 1e-15
+"""Share of the squared offsets below which what a fit leaves of them is rounding, other in another order of sums."""
 SPARE, SURPLUS = 2, 1.25
 """An order needs SPARE more points than unknowns, and above 2 also SURPLUS as many."""
 
@@ -297,7 +299,7 @@ def fit_orders(shell, reach, order, work):
             s *= s
             cov[0], cov[1], cov[2] = 4.0 * s * v33, 2.0 * s * v34, 4.0 * s * v35
             cov[3], cov[4], cov[5] = s * v44, 2.0 * s * v45, 4.0 * s * v55
-            work.residuals[degree] = max(left, 0.0)
+            work.residuals[degree] = max(left, ROUNDING * work.squares[shell])
             degree += 1
     return order
 

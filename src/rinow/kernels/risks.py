@@ -18,6 +18,9 @@ EXPLAINED = 3.0
 """A difference between a large and a small ball is a bias of the large one beyond so many squared errors."""
 UNSEEN = 0.3
 """Bias, over the inverse square of the radius, of a quadric where nothing is there to compare it with."""
+CLEAR = 0.05
+"""Share of squared errors in mean squares up to which there is nothing to gain by shrinkage: then no value depends on
+those around."""
 ROUNDING, MIDDLE = 1e-13, 5.0
 """Error of K by rounding, over the inverse square of the spacing, and the radius to take if all are that good."""
 
@@ -43,6 +46,25 @@ def average_rows(values, spacing, power, rows, low, high, links, starts, out):
                         counts[c] += 1.0 if is_known else 0.0
             for c in range(width):
                 out[rows[i] + k, c] = totals[c] / counts[c] if counts[c] > 0.0 else np.nan
+
+
+@parallel_kernel
+def median_rows(values, links, starts, out):
+    """Write the lower median of each entry over a centre and those linked to it; nan is left out."""
+    for i in prange(len(out)):
+        sorted_values = np.empty(starts[i + 1] - starts[i])
+        for c in range(values.shape[1]):
+            count = 0
+            for m in range(starts[i], starts[i + 1]):
+                x, j = values[links[m], c], count
+                if math.isnan(x):
+                    continue
+                while j > 0 and sorted_values[j - 1] > x:
+                    sorted_values[j] = sorted_values[j - 1]
+                    j -= 1
+                sorted_values[j] = x
+                count += 1
+            out[i, c] = sorted_values[(count - 1) // 2] if count else np.nan
 
 
 @inner
@@ -120,9 +142,15 @@ def least_risks(
         radius[i], order[i], risk[i] = best_radius, best_order, best
 
 
+@inner
+def shrinkage(share):
+    """Factor for values whose squares hold such a share of error: 1 up to `CLEAR`, 0 from 1 on."""
+    return min(max((1.0 - share) / (1.0 - CLEAR), 0.0), 1.0)
+
+
 @parallel_kernel
 def disc_shrinkage(starts, members, gaussian, risk, out):
-    """Write the positive-part shrinkage 1 - n / sum(K^2 / risk) over the n values of each disc; 1 without any."""
+    """Write the shrinkage for the share n / sum(K^2 / risk) over the n values of each disc; 1 without any."""
     for i in prange(len(starts) - 1):
         total, count = 0.0, 0
         for k in range(starts[i], starts[i + 1]):
@@ -130,7 +158,7 @@ def disc_shrinkage(starts, members, gaussian, risk, out):
             if not math.isnan(x):
                 total += x * x / risk[members[k]]
                 count += 1
-        out[i] = max(0.0, 1.0 - count / total) if total > 0.0 else 1.0
+        out[i] = shrinkage(count / total) if total > 0.0 else 1.0
 
 
 @parallel_kernel
