@@ -78,6 +78,21 @@ def test_independent_noise_is_no_detail(noise):
     np.testing.assert_array_equal(with_detail(mesh, estimate).gaussian, estimate.gaussian)
 
 
+def test_shallow_noise_that_neighbours_share_is_no_detail():
+    # Such as scanners leave, or smoothing.  To fits it is noise; rings would take it for curvature.
+    V, F, K = shapes.irregular_torus(3000)[:3]
+    torus = rinow.TriangleMesh(V, F)
+    a, b = torus.topology.edges.T
+    noise = np.random.default_rng(5).normal(size=torus.n_vertices)
+    for _ in range(2):
+        sums = np.bincount(a, noise[b], len(V)) + np.bincount(b, noise[a], len(V))
+        noise = 0.5 * (noise + sums / np.bincount(np.r_[a, b]))
+    noise *= 0.045 * torus.mean_edge_length / noise.std()
+    mesh = rinow.TriangleMesh(V + torus.vertex_normals * noise[:, None], F)
+    estimate = sectional(mesh)
+    assert relative_error(with_detail(mesh, estimate).gaussian, K) < 1.05 * relative_error(estimate.gaussian, K)
+
+
 def test_smooth_surfaces_without_noise_are_left_alone():
     V, F = shapes.irregular_torus(2000)[:2]
     mesh = rinow.TriangleMesh(V, F)

@@ -22,6 +22,9 @@ OF_HEIGHTS = (0.05, 0.2)
 """Correlations of the heights of neighbours over the fits up to which these are noise, and from which detail."""
 SMALL = 0.1
 """Heights, in spacings, that show no detail: their square is added to the variance."""
+DEEP, DEPTH = 6.0, (0.8, 1.0)
+"""Heights that are neither SMALL nor so many times the noise of the fits are noise below the first of these shares of
+the lesser one, and may be detail above the second: small balls see at least a third of noise that neighbours share."""
 OF_FITS, OF_CUBICS, OF_QUARTICS = (-0.05, 0.05), (-0.1, 0.1), (0.1, 0.3)
 """Correlations of neighbours up to which a difference is noise, and from which detail: of quadrics or quartics from
 fits, of single rings from cubics, of quartics from cubics.  White noise has -0.14, -0.25 and -0.1."""
@@ -49,19 +52,21 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     one of them has missed.
 
     - Heights of the vertices over the fits.  Independent noise leaves them uncorrelated on every triangulation, and
-      what is small beside the spacing is noise too, correlated or not.
+      what is small beside the spacing, and not large beside the noise, is noise too, correlated or not.
     - Quartics of three rings against fits: with detail in between, rings are taken.
     - Single rings against cubics of three rings, which they are averaged with as far as those miss detail.
     - Quartics against cubics.  They come nearest to the truth, if there is detail in between, and if they in turn leave
       no detail to single rings; if they do, then waves are too short for any polynomial.
     """
-    if estimate.mean is None or estimate.height is None or estimate.spacing is None:
+    if estimate.mean is None or estimate.height is None or estimate.spacing is None or estimate.noise is None:
         return estimate
     spacing = estimate.spacing
     height = np.clip(estimate.height / spacing, -1.0, 1.0)
     if not np.fmax.reduce(np.abs(height), initial=0.0) > SMALL * OF_HEIGHTS[0] ** 0.5:  # no correlation exceeds that
         return estimate
-    share = _common_share(mesh, height, OF_HEIGHTS, SMALL)
+    depth = np.sqrt(_ring_means(mesh, np.nan_to_num(height) ** 2, PASSES))
+    least = np.fmin(SMALL, DEEP * estimate.noise / spacing)
+    share = np.minimum(_common_share(mesh, height, OF_HEIGHTS, SMALL), _share_of(DEPTH, depth, least))
     share[~np.isfinite(estimate.gaussian) | mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
     if not share.any():
         return estimate
