@@ -64,7 +64,7 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     height = np.clip(estimate.height / spacing, -1.0, 1.0)
     if not np.fmax.reduce(np.abs(height), initial=0.0) > SMALL * OF_HEIGHTS[0] ** 0.5:  # no correlation exceeds that
         return estimate
-    depth = np.sqrt(_ring_means(mesh, np.nan_to_num(height) ** 2, PASSES))
+    depth = np.sqrt(ring_means(mesh, np.nan_to_num(height) ** 2, PASSES))
     least = np.fmin(SMALL, DEEP * estimate.noise / spacing)
     share = np.minimum(_common_share(mesh, height, OF_HEIGHTS, SMALL), _share_of(DEPTH, depth, least))
     share[~np.isfinite(estimate.gaussian) | mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
