@@ -17,6 +17,8 @@ __all__ = [
     "as_indices",
     "as_points",
     "as_quadruples",
+    "in_safe_unit",
+    "in_unit",
     "read_only",
 ]
 
@@ -47,6 +49,18 @@ def as_number(value: Any, name: str) -> float:
     if number.ndim:
         raise InvalidInputError(f"{name} has shape {number.shape}; give one number.")
     return float(number)
+
+
+def in_safe_unit(lengths: Floats) -> tuple[Floats, int]:
+    """Lengths divided by a power of two, which is exact, where squares would overflow or vanish; and its exponent."""
+    exponent = int(np.frexp(np.max(np.abs(lengths), initial=0.0, where=np.isfinite(lengths)))[1])
+    return (lengths, 0) if abs(exponent) <= tolerances.SAFE_EXPONENT else (np.ldexp(lengths, -exponent), exponent)
+
+
+def in_unit(values: Any, exponent: int) -> Any:
+    """The values times a power of two; inf where that is no number."""
+    with np.errstate(over="ignore"):
+        return np.ldexp(values, exponent) if exponent else values
 
 
 def as_points(points: ArrayLike, name: str = "points", dimension: int | None = None) -> Floats:

@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import shortest_path
 from scipy.spatial.distance import pdist, squareform
 
 from rinow import tolerances
-from rinow._arrays import as_distance_matrix, as_floats, as_indices, as_points, read_only
+from rinow._arrays import as_distance_matrix, as_floats, as_indices, as_points, in_safe_unit, in_unit, read_only
 from rinow.errors import InvalidInputError, NotAMetricError, naming
 from rinow.kernels import metrics
 
@@ -149,7 +149,11 @@ class MetricSpace:
             raise InvalidInputError(f"points[{i}, {j}] = {P[i, j]} is not finite; remove the point.")
         if not len(P):
             raise InvalidInputError("points is empty; a metric space has at least one point.")
-        return trusted_metric_space(squareform(pdist(P), checks=False) if len(P) > 1 else np.zeros((1, 1)))
+        scaled, exponent = in_safe_unit(P)
+        lengths = in_unit(pdist(scaled), exponent)
+        if not np.isfinite(lengths).all():
+            raise InvalidInputError(f"points reach {np.abs(P).max():.3g}, and their distances no number; scale them.")
+        return trusted_metric_space(squareform(lengths, checks=False) if len(P) > 1 else np.zeros((1, 1)))
 
     @classmethod
     def from_graph(cls, graph: Any, *, infinite: bool = False) -> MetricSpace:

@@ -14,7 +14,7 @@ from rinow.curvature.cloud_sheet import cloud_sheet
 from rinow.curvature.estimate import Estimate, undefined
 from rinow.curvature.sheet import morton_order
 from rinow.curvature.status import VertexStatus
-from rinow.curvature.surface import SurfaceCurvature, assembled, relabelled, rescaled
+from rinow.curvature.surface import LARGEST_SCALE, SurfaceCurvature, assembled, relabelled, rescaled
 from rinow.errors import InvalidInputError
 
 __all__ = ["point_cloud_curvature"]
@@ -100,6 +100,8 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     finite = np.isfinite(P).all(axis=1)
     distinct, place = np.unique(P[finite], axis=0, return_inverse=True)
     extent = float(np.ptp(distinct, axis=0).max()) if len(distinct) > 1 else 1.0
+    if not 1.0 / LARGEST_SCALE < extent < LARGEST_SCALE:
+        raise InvalidInputError(f"points extend over {extent:.3g}, and their curvature is no number; scale them.")
     estimate, status, n_strays = _of_distinct(
         (distinct - distinct[:1]) / extent, None if radius is None else float(radius) / extent
     )
