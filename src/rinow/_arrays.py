@@ -13,6 +13,7 @@ from rinow.errors import InvalidInputError, NotAMetricError
 __all__ = [
     "as_distance_matrix",
     "as_floats",
+    "as_index",
     "as_index_tuples",
     "as_indices",
     "as_points",
@@ -85,6 +86,14 @@ def as_indices(values: ArrayLike, n: int, name: str) -> Indices:
         where = f"[{', '.join(map(str, place))}]" if place else ""
         raise InvalidInputError(f"{name}{where} = {array[place]} is outside 0..{n - 1}; indices count from 0.")
     return np.ascontiguousarray(array, np.intp) if array.ndim else np.asarray(array, np.intp)
+
+
+def as_index(value: Any, n: int, name: str) -> int:
+    """One integer in [0, n)."""
+    index = as_indices(value, n, name)
+    if index.ndim:
+        raise InvalidInputError(f"{name} has shape {index.shape}; give one index.")
+    return int(index)
 
 
 def as_index_tuples(values: ArrayLike, *, width: int, n_points: int, name: str) -> Indices:

@@ -13,7 +13,16 @@ from scipy.sparse.csgraph import shortest_path
 from scipy.spatial.distance import pdist, squareform
 
 from rinow import tolerances
-from rinow._arrays import as_distance_matrix, as_floats, as_indices, as_points, in_safe_unit, in_unit, read_only
+from rinow._arrays import (
+    as_distance_matrix,
+    as_floats,
+    as_indices,
+    as_number,
+    as_points,
+    in_safe_unit,
+    in_unit,
+    read_only,
+)
 from rinow.errors import InvalidInputError, NotAMetricError, naming
 from rinow.kernels import metrics
 
@@ -75,6 +84,8 @@ class MetricSpace:
     rtol: InitVar[float] = field(default=tolerances.METRIC_TRIANGLE_INEQUALITY, kw_only=True)
 
     def __post_init__(self, rtol: float) -> None:
+        if not 0.0 <= as_number(rtol, "rtol") < np.inf:
+            raise InvalidInputError(f"rtol = {rtol} is not a relative tolerance; give a number such as 1e-9.")
         D = as_distance_matrix(self.distances, rtol=rtol)
         _check_triangle_inequality(D, rtol)
         object.__setattr__(self, "distances", read_only(D))
