@@ -13,10 +13,13 @@ from rinow.errors import InvalidInputError, NotAMetricError
 __all__ = [
     "as_distance_matrix",
     "as_floats",
+    "as_index",
     "as_index_tuples",
     "as_indices",
     "as_points",
     "as_quadruples",
+    "in_safe_unit",
+    "in_unit",
     "read_only",
 ]
 
@@ -49,6 +52,18 @@ def as_number(value: Any, name: str) -> float:
     return float(number)
 
 
+def in_safe_unit(lengths: Floats) -> tuple[Floats, int]:
+    """Lengths divided by a power of two, which is exact, where squares would overflow or vanish; and its exponent."""
+    exponent = int(np.frexp(np.max(np.abs(lengths), initial=0.0, where=np.isfinite(lengths)))[1])
+    return (lengths, 0) if abs(exponent) <= tolerances.SAFE_EXPONENT else (np.ldexp(lengths, -exponent), exponent)
+
+
+def in_unit(values: Any, exponent: int) -> Any:
+    """The values times a power of two; inf where that is no number."""
+    with np.errstate(over="ignore"):
+        return np.ldexp(values, exponent) if exponent else values
+
+
 def as_points(points: ArrayLike, name: str = "points", dimension: int | None = None) -> Floats:
     """Points as rows of an (n, dimension) array; non-finite coordinates are left to the caller."""
     array = as_floats(points, name)
@@ -71,6 +86,14 @@ def as_indices(values: ArrayLike, n: int, name: str) -> Indices:
         where = f"[{', '.join(map(str, place))}]" if place else ""
         raise InvalidInputError(f"{name}{where} = {array[place]} is outside 0..{n - 1}; indices count from 0.")
     return np.ascontiguousarray(array, np.intp) if array.ndim else np.asarray(array, np.intp)
+
+
+def as_index(value: Any, n: int, name: str) -> int:
+    """One integer in [0, n)."""
+    index = as_indices(value, n, name)
+    if index.ndim:
+        raise InvalidInputError(f"{name} has shape {index.shape}; give one index.")
+    return int(index)
 
 
 def as_index_tuples(values: ArrayLike, *, width: int, n_points: int, name: str) -> Indices:

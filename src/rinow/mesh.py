@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
-from rinow._arrays import as_floats, as_index_tuples, as_points, read_only
+from rinow._arrays import as_floats, as_index_tuples, as_points, in_safe_unit, in_unit, read_only
 from rinow._printing import OneLine
 from rinow.errors import InvalidInputError, InvalidMeshError
 from rinow.kernels import triangles
@@ -48,9 +48,14 @@ class _Mesh(OneLine):
         return len(self.faces)
 
     @cached_property
+    def _safe_lengths(self) -> tuple[Floats, int]:
+        """The lengths divided by a power of two where their squares would overflow or vanish, and its exponent."""
+        return in_safe_unit(self.edge_lengths)
+
+    @cached_property
     def _angles_and_areas(self) -> tuple[Floats, Floats]:
         angles, areas = np.empty((self.n_faces, 3)), np.empty(self.n_faces)
-        triangles.face_angles_and_areas(self.edge_lengths, angles, areas)
+        triangles.face_angles_and_areas(self._safe_lengths[0], angles, areas)
         return read_only(angles), read_only(areas)
 
     @property
@@ -60,14 +65,18 @@ class _Mesh(OneLine):
 
     @property
     def face_areas(self) -> Floats:
-        """(n_faces,): Euclidean area; nan for a face with an undefined length."""
-        return self._angles_and_areas[1]
+        """(n_faces,): Euclidean area; nan for a face with an undefined length.
+
+        Below 1e-308 and above 1e308 there is no number but 0 and inf.
+        """
+        areas, exponent = self._angles_and_areas[1], self._safe_lengths[1]
+        return in_unit(areas, 2 * exponent)
 
     @cached_property
     def face_is_degenerate(self) -> NDArray[np.bool_]:
         """(n_faces,): the face takes no part, or its area is 0 within rounding."""
-        longest = self.edge_lengths.max(axis=1)
-        proper = self.face_areas > tolerances.DEGENERATE_AREA * longest * longest
+        longest = self._safe_lengths[0].max(axis=1)
+        proper = self._angles_and_areas[1] > tolerances.DEGENERATE_AREA * longest * longest
         return read_only(~(proper & self.topology.face_used))
 
     @cached_property
@@ -240,9 +249,16 @@ class TriangleMesh(_Mesh):
     def edge_lengths(self) -> Floats:
         """(n_faces, 3): column k is the side opposite corner k; nan where a position is not finite."""
         L = np.empty((self.n_faces, 3))
-        triangles.face_edge_lengths(self.vertices, self.faces, L)
+        V, exponent = self._safe_vertices
+        triangles.face_edge_lengths(V, self.faces, L)
+        L = in_unit(L, exponent)
         L[~np.isfinite(L)] = np.nan
         return read_only(L)
+
+    @cached_property
+    def _safe_vertices(self) -> tuple[Floats, int]:
+        """The same of the positions."""
+        return in_safe_unit(self.vertices)
 
     @cached_property
     def vertex_is_finite(self) -> NDArray[np.bool_]:
@@ -255,8 +271,9 @@ class TriangleMesh(_Mesh):
         flip = self.topology.face_flips
         if self.topology.is_closed and self.topology.is_orientable:
             used, volumes = self.topology.face_used, np.empty(self.n_faces)
-            origin = self.vertices[self.faces[np.argmax(used), 0]]
-            triangles.signed_volumes(self.vertices, self.faces, used, flip, origin, volumes)
+            V, _ = self._safe_vertices
+            origin = V[self.faces[np.argmax(used), 0]]
+            triangles.signed_volumes(V, self.faces, used, flip, origin, volumes)
             if volumes.sum() < 0:
                 flip = ~flip
         return read_only(np.asarray(flip))
@@ -267,15 +284,16 @@ class TriangleMesh(_Mesh):
         t = self.topology
         normals = np.empty_like(self.vertices)
         triangles.vertex_normals(
-            self.vertices, self.faces, self.outward_flips, t.corner_offsets, t.vertex_corners, normals
+            self._safe_vertices[0], self.faces, self.outward_flips, t.corner_offsets, t.vertex_corners, normals
         )
         return read_only(normals)
 
     @cached_property
     def diagonal(self) -> float:
         """Length of the diagonal of the bounding box of the finite vertices; 0 without any."""
-        V = self.vertices[self.vertex_is_finite]
-        return float(np.linalg.norm(V.max(axis=0) - V.min(axis=0))) if len(V) else 0.0
+        V, exponent = self._safe_vertices
+        V = V[self.vertex_is_finite]
+        return float(in_unit(np.linalg.norm(V.max(axis=0) - V.min(axis=0)), exponent)) if len(V) else 0.0
 
     def intrinsic(self) -> IntrinsicMesh:
         """The same surface, its positions forgotten."""

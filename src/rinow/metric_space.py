@@ -13,7 +13,16 @@ from scipy.sparse.csgraph import shortest_path
 from scipy.spatial.distance import pdist, squareform
 
 from rinow import tolerances
-from rinow._arrays import as_distance_matrix, as_floats, as_indices, as_points, read_only
+from rinow._arrays import (
+    as_distance_matrix,
+    as_floats,
+    as_indices,
+    as_number,
+    as_points,
+    in_safe_unit,
+    in_unit,
+    read_only,
+)
 from rinow.errors import InvalidInputError, NotAMetricError, naming
 from rinow.kernels import metrics
 
@@ -75,6 +84,8 @@ class MetricSpace:
     rtol: InitVar[float] = field(default=tolerances.METRIC_TRIANGLE_INEQUALITY, kw_only=True)
 
     def __post_init__(self, rtol: float) -> None:
+        if not 0.0 <= as_number(rtol, "rtol") < np.inf:
+            raise InvalidInputError(f"rtol = {rtol} is not a relative tolerance; give a number such as 1e-9.")
         D = as_distance_matrix(self.distances, rtol=rtol)
         _check_triangle_inequality(D, rtol)
         object.__setattr__(self, "distances", read_only(D))
@@ -149,7 +160,11 @@ class MetricSpace:
             raise InvalidInputError(f"points[{i}, {j}] = {P[i, j]} is not finite; remove the point.")
         if not len(P):
             raise InvalidInputError("points is empty; a metric space has at least one point.")
-        return trusted_metric_space(squareform(pdist(P), checks=False) if len(P) > 1 else np.zeros((1, 1)))
+        scaled, exponent = in_safe_unit(P)
+        lengths = in_unit(pdist(scaled), exponent)
+        if not np.isfinite(lengths).all():
+            raise InvalidInputError(f"points reach {np.abs(P).max():.3g}, and their distances no number; scale them.")
+        return trusted_metric_space(squareform(lengths, checks=False) if len(P) > 1 else np.zeros((1, 1)))
 
     @classmethod
     def from_graph(cls, graph: Any, *, infinite: bool = False) -> MetricSpace:

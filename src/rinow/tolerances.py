@@ -50,3 +50,6 @@ ZERO_EDGE = 1e-60
 EXACT = 1e-12
 """Two bounds are one value when they differ by this share: rounding of the isometries that a proof used; one without
 makes them equal."""
+
+SAFE_EXPONENT = 150
+"""Lengths from 2^-150 to 2^150 have sixth powers, such as squared volumes, that are numbers of full precision."""

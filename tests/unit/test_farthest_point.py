@@ -114,6 +114,7 @@ def test_epsilon_nets_are_closed():
 
 
 BAD = [
+    (lambda: rinow.farthest_point_net(LINE, size=1, start=[0]), "start has shape (1,); give one index."),
     (lambda: rinow.farthest_point_net(LINE), "size and radius are both missing; give"),
     (lambda: rinow.farthest_point_net(LINE, size=0), "size = 0 is outside 1..9, the number of points"),
     (lambda: rinow.farthest_point_net(LINE, size=10), "size = 10 is outside 1..9, the number of points"),

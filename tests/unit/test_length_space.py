@@ -75,6 +75,8 @@ def test_the_intrinsic_metric_of_a_subset():
 
 
 BAD = [
+    (lambda: rinow.midpoints(line(3), [1], 0, epsilon=0.0), "x has shape (1,); give one index."),
+    (lambda: rinow.midpoints(line(3), 0, 1, epsilon="a"), "epsilon has type <U1; give real numbers."),
     (lambda: rinow.midpoints(line(3), 0, 3, epsilon=0.0), "y = 3 is outside 0..2"),
     (lambda: rinow.midpoints(line(3), 0, 1, epsilon=-1.0), "epsilon = -1.0 is not a defect"),
     (lambda: rinow.intrinsic_metric(line(3), 0.0), "step = 0.0 is not a length"),

@@ -192,3 +192,22 @@ def test_a_graph_is_no_distance_matrix():
     for graph in (csr_array(np.eye(3)), nx.path_graph(3)):
         with pytest.raises(rinow.errors.InvalidInputError, match=r"MetricSpace\.from_graph of a graph"):
             rinow.length_defect(graph)
+
+
+@pytest.mark.parametrize("rtol", [-1.0, np.nan, np.inf, "a", None, [0.1]])
+def test_rtol_is_a_number(rtol):
+    with pytest.raises(rinow.InvalidInputError, match=r"^rtol "):
+        rinow.MetricSpace([[0, 1], [1, 0]], rtol=rtol)
+
+
+@pytest.mark.parametrize(
+    ("spaces", "metric", "message"),
+    [
+        (None, "lipschitz", "spaces is of type NoneType; give a list of spaces."),
+        (np.array(0.1), "lipschitz", "spaces is of type ndarray; give"),
+        ([[[0.0]]], ["lipschitz"], "is unknown; give one of"),
+    ],
+)
+def test_collections_are_lists_with_a_metric_by_name(spaces, metric, message):
+    with pytest.raises(rinow.InvalidInputError, match=message):
+        rinow.distance_matrix(spaces, metric=metric)

@@ -92,10 +92,14 @@ def distance_matrix(
            [0.5, 0. , 1. ],
            [1.5, 1. , 0. ]])
     """
-    if metric not in _METRICS:
+    try:
+        listed = list(spaces)
+    except TypeError:
+        raise InvalidInputError(f"spaces is of type {type(spaces).__name__}; give a list of spaces.") from None
+    if not isinstance(metric, str) or metric not in _METRICS:  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InvalidInputError(f"metric = {metric!r} is unknown; give one of {', '.join(map(repr, _METRICS))}.")
     check, compare = _METRICS[metric]
-    checked = [check(space, f"spaces[{i}]") for i, space in enumerate(spaces)]
+    checked = [check(space, f"spaces[{i}]") for i, space in enumerate(listed)]
     if not checked:
         raise InvalidInputError("spaces is empty; give at least one space.")
     pairs = [(i, j) for i in range(len(checked)) for j in range(i)]

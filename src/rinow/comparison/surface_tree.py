@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.errors import InvalidInputError
 from rinow.kernels import box_trees
 from rinow.kernels.box_trees import BoxTree
 from rinow.mesh import TriangleMesh
@@ -19,6 +20,10 @@ Indices = NDArray[np.intp]
 
 ROUNDING = 64 * 2.0**-53
 """Error of a distance between points of a frame of size 1."""
+
+
+LARGEST_SIZE = 1e307
+"""Half the extent of sets whose distances are numbers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +43,21 @@ class Frame:
 
 
 def frame_of(*sets: Floats) -> Frame:
-    """The frame of the box around some point sets."""
+    """The frame of the box around some point sets.
+
+    Raises
+    ------
+    InvalidInputError
+        If distances between points may be too large for a number.
+    """
     least = np.min([points.min(axis=0) for points in sets], axis=0)
     greatest = np.max([points.max(axis=0) for points in sets], axis=0)
     centre = 0.5 * least + 0.5 * greatest
     size = float((greatest - centre).max())
+    if size > LARGEST_SIZE:
+        raise InvalidInputError(
+            f"points lie {size:.3g} from their middle, and some distances are no number; scale them."
+        )
     return Frame(centre, float(2.0 ** np.frexp(size)[1]) if size > 0.0 else 1.0)
 
 

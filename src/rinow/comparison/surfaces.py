@@ -27,6 +27,9 @@ Indices = NDArray[np.intp]
 ALL_VERTICES = 3000
 """Vertices up to which all distances of a mesh are computed, if the time suffices: 72 MB."""
 
+LARGEST_DISTANCE = 1e307
+"""From the first point to the farthest one, so that sums of distances are numbers."""
+
 LARGEST_NET, NET_BYTES = 600, 1 << 28
 """Points of a net, and memory for their distances to all vertices."""
 
@@ -186,6 +189,8 @@ def _net(graph: csr_array, vertices: Indices, clock: Clock, clock_of_small: Cloc
     nearest = np.full(n, np.inf)
     for k in range(size):
         rows[k] = dijkstra(graph, indices=chosen[k])
+        if k == 0 and not rows[0].max() < LARGEST_DISTANCE:
+            raise InvalidMeshError(f"mesh has distances of {rows[0].max():.3g}, and some are no number; scale it.")
         np.minimum(nearest, rows[k], out=nearest)
         nearest[chosen[k]] = -1.0  # vertices may coincide
         limit = clock_of_small if k < SMALL_NET else clock if k < LARGEST_NET else clock_of_all

@@ -14,7 +14,7 @@ from rinow.curvature.cloud_sheet import cloud_sheet
 from rinow.curvature.estimate import Estimate, undefined
 from rinow.curvature.sheet import morton_order
 from rinow.curvature.status import VertexStatus
-from rinow.curvature.surface import SurfaceCurvature, assembled, relabelled, rescaled
+from rinow.curvature.surface import LARGEST_SCALE, SurfaceCurvature, assembled, relabelled, rescaled
 from rinow.errors import InvalidInputError
 
 __all__ = ["point_cloud_curvature"]
@@ -116,7 +116,10 @@ def _distinct(points: Floats) -> tuple[Floats, float, NDArray[np.intp]]:
     if not len(points):
         return points, 1.0, np.empty(0, np.intp)
     low = points.min(axis=0)
-    extent = float((points - low).max()) or 1.0
+    with np.errstate(over="ignore"):
+        extent = float((points - low).max()) or 1.0
+    if not 1.0 / LARGEST_SCALE < extent < LARGEST_SCALE:
+        raise InvalidInputError(f"points extend over {extent:.3g}, and their curvature is no number; scale them.")
     units = (points - low) / extent
     _, first, place = np.unique(np.rint(units / SAME), axis=0, return_index=True, return_inverse=True)
     return units[first], extent, place.ravel()

@@ -167,11 +167,11 @@ def _in_safe_unit(mesh: TriangleMesh | IntrinsicMesh) -> TriangleMesh | Intrinsi
     longest = float(np.fmax.reduce(mesh.edge_lengths, axis=None))
     if not longest > 0.0 or 2.0**-100 < longest < 2.0**100:
         return mesh
-    unit = 2.0 ** -np.floor(np.log2(longest))
+    exponent = -int(np.frexp(longest)[1])
     if isinstance(mesh, IntrinsicMesh):
-        return IntrinsicMesh(mesh.faces, mesh.edge_lengths * unit, mesh.n_vertices)
+        return IntrinsicMesh(mesh.faces, np.ldexp(mesh.edge_lengths, exponent), mesh.n_vertices)
     with np.errstate(over="ignore"):
-        return TriangleMesh(mesh.vertices * unit, mesh.faces)
+        return TriangleMesh(np.ldexp(mesh.vertices, exponent), mesh.faces)
 
 
 def _all_cone_points(mesh: TriangleMesh, lines: CreaseLines, corners: Indices, closed: Bools) -> tuple[Indices, Floats]:

@@ -23,7 +23,7 @@ from rinow.curvature.notes import crease_notes, left_out_notes, mesh_notes, weld
 from rinow.curvature.sectional import sectional
 from rinow.curvature.status import VertexStatus, vertex_status
 from rinow.curvature.wald import wald
-from rinow.errors import InvalidInputError
+from rinow.errors import InvalidInputError, InvalidMeshError
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh, as_triangle_mesh
 
 __all__ = ["SurfaceCurvature", "assembled", "relabelled", "rescaled", "surface_curvature"]
@@ -42,8 +42,9 @@ DIRECTIONS = ("direction1", "direction2")
 QUARTILES = {"min": 0, "25 %": 25, "50 %": 50, "75 %": 75, "max": 100}
 POWERS = {"gaussian": 2, "spread": 2, "mean": 1, "k1": 1, "k2": 1, "curvedness": 1, "radius": -1}
 """Power of 1/length of each field that has a unit."""
-SAFE_SCALE = 2.0**100
-"""Lengths between this and its inverse are computed as they are; others after a change of the unit."""
+SAFE_SCALE, LARGEST_SCALE = 2.0**100, 2.0**500
+"""Lengths between the first and its inverse are computed as they are, others after a change of the unit; beyond the
+second one curvature is no number."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -201,6 +202,8 @@ def _with_safe_lengths(mesh: TriangleMesh | IntrinsicMesh) -> tuple[TriangleMesh
     longest = float(np.fmax.reduce(mesh.edge_lengths, axis=None))
     if not longest > 0.0 or 1.0 / SAFE_SCALE < longest < SAFE_SCALE:
         return mesh, 1.0
+    if not 1.0 / LARGEST_SCALE < longest < LARGEST_SCALE:
+        raise InvalidMeshError(f"mesh has edges of length {longest:.3g}, and its curvature no number; scale the mesh.")
     unit = 2.0 ** -np.floor(np.log2(longest))
     if isinstance(mesh, IntrinsicMesh):
         return IntrinsicMesh(mesh.faces, mesh.edge_lengths * unit, mesh.n_vertices), unit

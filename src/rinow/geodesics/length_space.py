@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 
-from rinow._arrays import as_indices, as_number
+from rinow._arrays import as_index, as_number
 from rinow.errors import InvalidInputError
 from rinow.kernels.midpoints import worst_midpoint_defects
 from rinow.metric_space import MetricSpace, as_metric_space, finite_distances
@@ -57,9 +57,9 @@ def midpoints(space: Any, x: int, y: int, *, epsilon: float) -> Indices:
     >>> midpoints(line, 0, 4, epsilon=0.0), midpoints(line, 0, 5, epsilon=1.0)
     (array([2]), array([2, 3]))
     """
-    D = as_metric_space(space).distances
-    i, j = (int(as_indices(value, len(D), name)) for value, name in ((x, "x"), (y, "y")))
-    if not epsilon >= 0.0:
+    D = finite_distances(space)
+    i, j = as_index(x, len(D), "x"), as_index(y, len(D), "y")
+    if not as_number(epsilon, "epsilon") >= 0.0:
         raise InvalidInputError(f"epsilon = {epsilon} is not a defect; give a number that is not negative.")
     defects = np.maximum(np.abs(2.0 * D[i] - D[i, j]), np.abs(2.0 * D[j] - D[i, j]))
     return np.flatnonzero(defects <= epsilon)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
-from rinow._arrays import as_indices, as_number
+from rinow._arrays import as_index, as_indices, as_number
 from rinow._printing import OneLine
 from rinow.errors import InvalidInputError
 from rinow.mesh import as_mesh, is_mesh_like
@@ -116,7 +116,7 @@ def farthest_point_net(
         D = as_metric_space(space_or_mesh).distances
         mesh, candidates, n_points, ball_of = None, np.arange(len(D)), len(D), space_balls(D)
     limit = _as_size(size, radius, len(candidates))
-    first = int(as_indices(start, n_points, "start"))
+    first = as_index(start, n_points, "start")
     if first not in candidates:
         raise InvalidInputError(f"start = {first} is not on the surface: it has no face or no position; take another.")
     indices, radii, distances, labels = _grow(
