@@ -258,8 +258,9 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
     for r = 1, 2, 3 and m = 0, 1, 2, 3, 4, 6, ... 128.  At each vertex the one with the least sum of variance and
     squared bias is taken.  The variance is that of `LengthNoise`, its level from the residuals of small fits.  The
     squared bias of :math:`K_{m,r}` is the mean over a neighbourhood of :math:`(K_{m/2,r+1} - K_{m,r})^2`,
-    less the variance of this difference.  At the end the values are multiplied by the positive part of
-    :math:`1 - \langle error^2 \rangle / \langle K^2 \rangle` (James and Stein); a surface without defects has K = 0.
+    less the variance of this difference.  At the end the values are multiplied by
+    :math:`(1 - \langle error^2 \rangle / \langle K^2 \rangle) / 0.95`, cut to between 0 and 1 (after James and
+    Stein); a surface without defects has K = 0.
 
     K is the defects over areas of the arcs whose chords the edges are, as far as an irregular mesh shows the normal
     curvatures κ: see `rinow.curvature.arcs`.  A regular mesh of chords has a metric that no comparison tells from that
