@@ -15,7 +15,7 @@ from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, 
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
-from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, levelled, sample, scales, select, windows
+from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, scales, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, rings_around, stencil_surface
 from rinow.curvature.strays import spikes, stray_vertices
@@ -171,16 +171,13 @@ def blended_patches(
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, core)
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
-    logs = samples.plane_logs, samples.torus_logs, samples.level_logs
-    plane, choice, over_plane = (chosen_at(centres, samples, between, x) for x in logs)
-    over_plane.risk[beside] = np.inf
+    plane, choice = (chosen_at(centres, samples, between, logs) for logs in (samples.plane_logs, samples.torus_logs))
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
     window = _widened(low[centres], high[centres] + np.where(beside, EDGE_RADII, 0), top[centres], len(ladder.reaches))
-    own: Any = slice(None) if quality.selects else np.flatnonzero(beside)
-    guess = _safe(Choice(choice.radius[own], choice.order[own], choice.risk[own]), beside[own], ladder)
-    frames[own] = ladder.frames(sheet, centres[own], frames[own], guess, tasks)
-    choice = levelled(frames, choice, over_plane)
     if quality.selects or beside.any():
+        own: Any = slice(None) if quality.selects else np.flatnonzero(beside)
+        guess = _safe(Choice(choice.radius[own], choice.order[own], choice.risk[own]), beside[own], ladder)
+        frames[own] = ladder.frames(sheet, centres[own], frames[own], guess, tasks)
         links = _like(members_of_discs(sheet, centres[own], centres[own], AROUND * core[own]), beside[own])
         own_window = window[0][own], window[1][own], window[2][own], at_centres[own]
         found = select(sheet, ladder, centres[own], frames[own], own_window, links, PASSES, tasks)
