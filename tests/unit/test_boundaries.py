@@ -44,7 +44,7 @@ def test_choices_at_a_boundary_are_as_good_as_one_radius_for_all(surface, noise,
     shape = shapes.noisy(surface(), noise, seed=23)
     h = TriangleMesh(shape.vertices, shape.faces).mean_edge_length
     known = np.fmin.reduce([errors_at_boundary(shape, radius=r * h) for r in (3, 4, 5, 6, 8, 10, 13)])
-    # The radius best for these errors cannot be known without them.  By K alone H of the helicoid has 4 to 9 times that.
+    # The best radius cannot be known without the errors.  By K alone H of the helicoid has 4 to 9 times its error.
     chosen = errors_at_boundary(shape, quality=quality)
     assert (chosen < 3.0 * known).all()
 
