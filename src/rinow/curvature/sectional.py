@@ -45,17 +45,15 @@ EDGE_CALIBRATION = 1.8
 APART = 3.0
 """Squared error over the variance between the patches of a vertex: they share most of their points, so that they err
 together more than they differ."""
-EDGE_RINGS, EDGE_RADII = 2, 4
-"""Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, worse placed."""
-EDGE_ORDER = 2
-"""Highest order of their first fits: what samples of the interior chose bends too freely with points on one side."""
+EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 4, 2
+"""Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, worse placed.
+Orders above the last one bend too freely there for a first frame."""
 
 
 class Search(NamedTuple):
-    """How centres look for order and radius.
+    """How centres look for order and radius: by whose errors (`patch_fits`), how often, and by biases how far around.
 
-    By the errors of K or of all curvatures (`patch_fits`), so many times, each from the frames of the fits chosen
-    before, and with squared biases of the centres within `around` times the radius a patch covers.
+    Each round starts from frames of the fits chosen before; `around` is in radii a patch covers.
     """
 
     errors_of: int
@@ -63,6 +61,8 @@ class Search(NamedTuple):
     around: float
 
 
+NARROW = 3
+"""Another time only so many radii more and less than that chosen are looked at."""
 INSIDE, BESIDE = Search(patch_fits.GAUSSIAN, 1, 2.2), Search(patch_fits.BOTH, 2, 4.5)
 """Centres inside and beside a boundary; there they lie in a strip and their first frames are poor."""
 
@@ -227,14 +227,17 @@ def _look(
 ) -> None:  # fmt: skip
     """Let some of the centres choose by themselves, in place."""
     few = centres[own]
-    own_window = window[0][own], window[1][own], window[2][own], window[3][own]
+    low, high, top, noise = window[0][own], window[1][own], window[2][own], window[3][own]
     links = members_of_discs(sheet, few, few, search.around * core[own])
     tasks.part = len(own) / len(centres) / search.rounds
     for _ in range(search.rounds):
         last = Choice(choice.radius[own], choice.order[own], choice.risk[own])
         frames[own] = ladder.frames(sheet, few, frames[own], last, tasks)
-        found = select(sheet, ladder, few, frames[own], own_window, links, PASSES, search.errors_of, tasks)
+        found = select(sheet, ladder, few, frames[own], (low, high, top, noise), links, PASSES, search.errors_of, tasks)
         choice.radius[own], choice.order[own], choice.risk[own] = found
+        has_fit = found.radius >= 0
+        low = np.where(has_fit, np.maximum(low, found.radius - NARROW), low)
+        high = np.where(has_fit, np.minimum(high, found.radius + NARROW), high)
     tasks.part = 1.0
 
 

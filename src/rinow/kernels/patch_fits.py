@@ -93,9 +93,10 @@ def write_weighted(gaussian, mean, of_gaussian, of_mean, share, values, gradient
 
 
 @inner
-def sum_of_forms(gradients, c):
+def sum_of_forms(gradients, share, c):
     """Variance of both by the covariances of the second derivatives."""
-    return quadratic_form(gradients[0], c) + quadratic_form(gradients[1], c)
+    total = quadratic_form(gradients[0], c)
+    return total + quadratic_form(gradients[1], c) if share[1] > 0.0 else total
 
 
 @inner
@@ -117,7 +118,7 @@ def write_row(t, count, top, share, k1, k2, s2, fit, tables, values, gradients):
         if not jet[1] * jet[1] + jet[2] * jet[2] <= STEEP:
             values[d] = np.nan
             continue
-        linear = s2 * sum_of_forms(gradients[d], c)
+        linear = s2 * sum_of_forms(gradients[d], share, c)
         second = (share[0] * s2 * factor) ** 2 * (c[0] * c[5] + c[2] * c[2] + 2.0 * c[3] * c[3])
         tables.variance[t, i] = linear + second if known else linear
         tables.leverage[t, i] = count * quadratic_form(of_mean, c)
@@ -129,7 +130,8 @@ def write_row(t, count, top, share, k1, k2, s2, fit, tables, values, gradients):
     for d in range(2, top - 1):
         if not math.isnan(values[d, 0]) and not math.isnan(values[d + 2, 0]):
             above, below = fit.covariances[d + 2], fit.covariances[d]
-            v = s2 * max(sum_of_forms(gradients[d], above) - sum_of_forms(gradients[d], below), 0.0)
+            more = sum_of_forms(gradients[d], share, above) - sum_of_forms(gradients[d], share, below)
+            v = s2 * max(more, 0.0)
             e2 = squared_difference(values[d, 0], values[d, 1], values[d + 2, 0], values[d + 2, 1])
             tables.bias_variance[t, d - 2] = v
             tables.bias[t, d - 2] = e2 - (v if known else 0.0)

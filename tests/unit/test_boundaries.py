@@ -1,0 +1,72 @@
+"""Curvature at boundaries under noise, where fits see points on one side only."""
+
+import numpy as np
+import pytest
+
+import shapes
+from rinow import TriangleMesh, surface_curvature
+from rinow.curvature.centres import flat_frames
+from rinow.curvature.patch_tasks import Tasks, fill_tables
+from rinow.curvature.scale import Ladder
+from rinow.curvature.sheet import patch_sheet
+from rinow.kernels import patch_driver, patch_fits
+
+PITCH = 0.6
+
+
+def helicoid(n=1600):
+    """A minimal surface: errors of H that leave K alone are all that H has."""
+    patch = shapes.open_patch(n, seed=21)
+    u, v = patch.vertices[:, :2].T
+    points = np.column_stack([v * np.cos(2 * u), v * np.sin(2 * u), 2 * PITCH * u])
+    return shapes.Shape(points, patch.faces, -((PITCH / (PITCH**2 + v**2)) ** 2), np.zeros(n))
+
+
+def cap(n=1600):
+    """A square patch of the unit sphere, with corners."""
+    patch = shapes.open_patch(n, seed=22)
+    x, y = 0.6 * patch.vertices[:, :2].T
+    return shapes.Shape(np.column_stack([x, y, np.sqrt(1 - x * x - y * y)]), patch.faces, np.ones(n), np.ones(n))
+
+
+def errors_at_boundary(shape, **options):
+    """Root mean squares of the errors of K and |H| at boundary vertices."""
+    found = surface_curvature((shape.vertices, shape.faces), **options)
+    ends = TriangleMesh(shape.vertices, shape.faces).topology.vertex_is_boundary
+    errors = found.gaussian - shape.gaussian, np.abs(found.mean) - shape.mean
+    return np.array([np.sqrt(np.mean(e[ends] ** 2)) for e in errors])
+
+
+@pytest.mark.parametrize("quality", ["best", "fast"])
+@pytest.mark.parametrize("noise", [0.005, 0.02])
+@pytest.mark.parametrize("surface", [helicoid, cap])
+def test_choices_at_a_boundary_are_as_good_as_one_radius_for_all(surface, noise, quality):
+    shape = shapes.noisy(surface(), noise, seed=23)
+    h = TriangleMesh(shape.vertices, shape.faces).mean_edge_length
+    known = np.fmin.reduce([errors_at_boundary(shape, radius=r * h) for r in (3, 4, 5, 6, 8, 10, 13)])
+    # The best radius cannot be known without the errors.  By K alone H of the helicoid has 4 to 9 times its error.
+    chosen = errors_at_boundary(shape, quality=quality)
+    assert (chosen < 3.0 * known).all()
+
+
+def test_errors_of_both_are_the_sum_of_those_of_each():
+    shape = shapes.noisy(shapes.irregular_torus(600), 0.02)
+    sheet, _ = patch_sheet(TriangleMesh(shape.vertices, shape.faces))
+    centres = np.array([5, 300, 590], np.int32)
+    frames = flat_frames(sheet, centres)
+    frames[:, 9:] = 0.4, -1.1
+    low, high, orders = (np.full(3, k, np.int32) for k in (3, 6, 6))
+    rows, noise = np.arange(4) * 4, (0.02 * sheet.spacing[centres]) ** 2
+
+    def tables(errors_of):
+        place = (patch_driver.TABLES, sheet, centres, frames, low, high, orders, rows, noise, errors_of)
+        return fill_tables(Ladder.free(sheet).fitting(*place), True, Tasks(), 1.0)
+
+    gaussian, mean, both = (tables(k) for k in (patch_fits.GAUSSIAN, patch_fits.MEAN, patch_fits.BOTH))
+    curvedness = 0.5 * (0.4**2 + 1.1**2) * np.repeat(sheet.spacing[centres], 4)[:, None] ** 2
+    for name in ("variance", "bias", "bias_variance", "jump"):
+        of_both, of_gaussian, of_mean = (getattr(t, name) for t in (both, gaussian, mean))
+        assert np.isfinite(of_both).any()
+        # Tables are of single precision, and biases differences of what they sum.
+        expected = of_gaussian + curvedness * of_mean
+        np.testing.assert_allclose(of_both, expected, rtol=1e-4, atol=1e-5 * np.nanmax(of_both))
