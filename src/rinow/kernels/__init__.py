@@ -11,8 +11,8 @@ Space forms and quadruples
 Curves and graphs
     `polylines`, `curves`; `graphs`, `landmarks`; `metrics`, `midpoints`.
 Fits
-    `balls` over `osculating_torus`, `nested_fits`, `patch_fits`, `risks`, `patches` and `bends`, all driven by
-    `patch_driver`; `covers` and `patch_order` place the patches; `monge`, `quadrics`, `ring_jets`; `clouds`,
+    `balls` over `osculating_torus`, `nested_fits` by `eliminations`, `patch_fits`, `risks`, `patches` and `bends`, all
+    driven by `patch_driver`; `covers` and `patch_order` place the patches; `monge`, `quadrics`, `ring_jets`; `clouds`,
     `cloud_strays` and `cloud_layers` without a mesh.
 Averages of angle defects
     `development`, `smoothing`, `stars`, `arcs`, `chord_forms`, `geodesic_stars`.

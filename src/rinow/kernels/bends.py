@@ -1,16 +1,8 @@
 """How well a fit fixes second derivatives beside its centre: the variances of them that noise of variance 1 causes."""
 
 from rinow.kernels._jit import inlined, inner
-from rinow.kernels.nested_fits import (
-    AT_ONCE,
-    COLUMNS,
-    DEGREES,
-    LANES,
-    TERMS,
-    V_POWERS,
-    subtract_beside,
-    subtract_earlier,
-)
+from rinow.kernels.eliminations import AT_ONCE, LANES, subtract_beside, subtract_earlier
+from rinow.kernels.nested_fits import COLUMNS, DEGREES, TERMS, V_POWERS
 
 
 @inner
