@@ -14,7 +14,7 @@ from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 from rinow.kernels.patch_fits import GAUSSIAN, MEAN
 
-__all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "sample", "scales", "select", "windows"]
+__all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "levelled", "sample", "scales", "select", "windows"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -26,6 +26,8 @@ SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
 """Radius a sample covers, in spacings, for surfaces up to so many vertices: with and without refinement."""
 RESOLVED = 0.1
 """Curvature, over the inverse spacing, up to which a mesh resolves its surface: large balls miss nothing there."""
+LEVEL = 2.0
+"""Factor by which the risk over a plane must be less than that over the torus for the plane to be taken."""
 ROUNDING = 1e-15
 """Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
@@ -94,6 +96,7 @@ class Samples(NamedTuple):
     members: Ints
     plane_logs: Floats
     torus_logs: Floats
+    level_logs: Floats
     choice: Choice
     noise: Floats
     spacing: Floats
@@ -116,13 +119,18 @@ def sample(
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), choice, tasks)
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
-    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, len(ladder.reaches), GAUSSIAN, links, tasks)
+    n_radii, level = len(ladder.reaches), frames.copy()
+    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, n_radii, GAUSSIAN, links, tasks)
+    level[:, 9:] = 0.0
+    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, n_radii, GAUSSIAN, links, tasks)
+    choice = levelled(frames, choice, over_plane)
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
     member_starts, members = members_of_discs(sheet, everything, centres, NEAR * radius, room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
-    return Samples(starts, near, member_starts, members, plane_logs, torus_logs, choice, noise, sheet.spacing[centres])
+    logs = plane_logs, torus_logs, level_logs
+    return Samples(starts, near, member_starts, members, *logs, choice, noise, sheet.spacing[centres])
 
 
 def _examine(
@@ -193,6 +201,16 @@ def chosen_at(vertices: Ints, samples: Samples, scales: Scales, logs: Floats) ->
     table = logs.reshape(len(logs), logs.shape[1] * logs.shape[2])
     covers.choices(vertices, samples.starts, samples.near, table, *scales, N_ORDERS, N_BLOCKS, *choice)
     return choice
+
+
+def levelled(frames: Floats, choice: Choice, over_plane: Choice) -> Choice:
+    """The choices over tori or over planes, whichever risk less; frames of the latter lose their curvatures.
+
+    A surface that does not keep its curvatures over a ball, as waves do not, leaves its torus further than its plane.
+    """
+    is_level = LEVEL * over_plane.risk < choice.risk
+    frames[is_level, 9:] = 0.0
+    return Choice(*(np.where(is_level, a, b) for a, b in zip(over_plane, choice, strict=True)))
 
 
 def select(

@@ -15,7 +15,7 @@ from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, 
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
-from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, sample, scales, select, windows
+from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, levelled, sample, scales, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, rings_around, stencil_surface
 from rinow.curvature.strays import spikes, stray_vertices
@@ -188,9 +188,11 @@ def blended_patches(
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, core)
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
-    plane, choice = (chosen_at(centres, samples, between, logs) for logs in (samples.plane_logs, samples.torus_logs))
+    logs = samples.plane_logs, samples.torus_logs, samples.level_logs
+    plane, choice, over_plane = (chosen_at(centres, samples, between, x) for x in logs)
+    over_plane.risk[beside] = np.inf
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
-    choice = _safe(choice, beside, ladder)
+    choice = levelled(frames, _safe(choice, beside, ladder), over_plane)
     high = high[centres] + np.where(beside, EDGE_RADII, 0)
     window = *_widened(low[centres], high, top[centres], len(ladder.reaches)), at_centres
     for search, is_own in ((INSIDE, ~beside & quality.selects), (BESIDE, beside)):
@@ -232,7 +234,9 @@ def _look(
     tasks.part = len(own) / len(centres) / search.rounds
     for _ in range(search.rounds):
         last = Choice(choice.radius[own], choice.order[own], choice.risk[own])
+        is_level = ~frames[own, 9:].any(axis=1)
         frames[own] = ladder.frames(sheet, few, frames[own], last, tasks)
+        frames[own[is_level], 9:] = 0.0
         found = select(sheet, ladder, few, frames[own], (low, high, top, noise), links, PASSES, search.errors_of, tasks)
         choice.radius[own], choice.order[own], choice.risk[own] = found
         has_fit = found.radius >= 0
