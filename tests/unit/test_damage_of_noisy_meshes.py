@@ -7,7 +7,7 @@ from scipy.sparse.csgraph import dijkstra
 
 import shapes
 from rinow import TriangleMesh, surface_curvature
-from rinow.kernels import covers, risks
+from rinow.kernels import risks
 
 FIELDS = ("gaussian", "mean", "spread")
 NOISY = shapes.noisy(shapes.irregular_torus(2500), 0.01)
@@ -88,13 +88,6 @@ def test_medians_over_linked_rows():
         for c in range(4):
             known = sorted(x for x in values[links[starts[i] : starts[i + 1]], c].tolist() if x == x)
             np.testing.assert_equal(out[i, c], known[(len(known) - 1) // 2] if known else np.nan)
-
-
-def test_lower_median_of_some_rows():
-    values = np.array([5.0, 1.0, 4.0, 4.0, 2.0])
-    for rows in ([0], [0, 1], [0, 1, 2], [2, 3], [0, 2, 3, 4], [0, 1, 2, 3, 4]):
-        assert covers.lower_median(np.array(rows), values) == sorted(values[rows])[(len(rows) - 1) // 2]
-    assert covers.lower_median(np.array([], np.int64), values) == 0.0
 
 
 def test_shrinkage_of_what_is_clear_and_of_what_is_error():

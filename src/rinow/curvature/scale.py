@@ -86,7 +86,7 @@ class Samples(NamedTuple):
     """What the sample tells.
 
     For each vertex the samples near it (compressed rows); for each sample the vertices it speaks for (compressed rows),
-    its logarithmic risks of H over the plane and of K over the torus for each radius and order, its choice, noise and
+    its logarithmic risks of H over the plane, and of K over the torus and its plane, for each radius and order, its choice, noise and
     spacing.
     """
 

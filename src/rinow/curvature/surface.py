@@ -42,7 +42,7 @@ DIRECTIONS = ("direction1", "direction2")
 QUARTILES = {"min": 0, "25 %": 25, "50 %": 50, "75 %": 75, "max": 100}
 POWERS = {"gaussian": 2, "spread": 2, "mean": 1, "k1": 1, "k2": 1, "curvedness": 1, "radius": -1}
 """Power of 1/length of each field that has a unit."""
-SAFE_SCALE, LARGEST_SCALE = 2.0**100, 2.0**500
+SAFE_SCALE, LARGEST_SCALE = 2.0**100, 2.0**505
 """Lengths between the first and its inverse are computed as they are, others after a change of the unit; beyond the
 second one curvature is no number."""
 

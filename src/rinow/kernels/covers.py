@@ -101,24 +101,12 @@ def steps_between(sample, vertex, rung):
     return math.floor(math.log(sample / vertex) / rung + 0.5)
 
 
-@inner
-def lower_median(rows, values):
-    """The middle one of some values, the lower of two; 0 without any."""
-    for i in rows:
-        below = equal = 0
-        for j in rows:
-            below += values[j] < values[i]
-            equal += values[j] == values[i]
-        if below <= (len(rows) - 1) // 2 < below + equal:
-            return values[i]
-    return 0.0
-
-
 @parallel_kernel
 def windows(starts, samples, radius, order, noise, spacing, at_samples, rung, n_radii, low, high, top, sigma2):
     """Write the range of radii and the highest order of the samples near each vertex, and the noise between them."""
     for v in prange(len(starts) - 1):
         low[v], high[v], top[v] = 127, -1, 0  # no sample
+        total, count = 0.0, 0
         for i in range(starts[v], starts[v + 1]):
             s = samples[i]
             if radius[s] < 0:
@@ -126,7 +114,9 @@ def windows(starts, samples, radius, order, noise, spacing, at_samples, rung, n_
             same = min(max(radius[s] + steps_between(at_samples[s], spacing[v], rung[v]), 0), n_radii - 1)
             low[v], high[v] = min(low[v], same, radius[s]), max(high[v], same, radius[s])
             top[v] = max(top[v], order[s])
-        sigma2[v] = lower_median(samples[starts[v] : starts[v + 1]], noise)
+            total += math.log(max(noise[s], 1e-300))
+            count += 1
+        sigma2[v] = math.exp(total / count) if count else 0.0
 
 
 @inner
