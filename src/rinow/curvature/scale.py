@@ -86,8 +86,8 @@ class Samples(NamedTuple):
     """What the sample tells.
 
     For each vertex the samples near it (compressed rows); for each sample the vertices it speaks for (compressed rows),
-    its logarithmic risks of H over the plane, and of K over the torus and its plane, for each radius and order, its choice, noise and
-    spacing.
+    its logarithmic risks of H over the plane, and of K over the torus and over its plane, for each radius and order,
+    its choice, noise and spacing.
     """
 
     starts: Ints
