@@ -11,7 +11,7 @@ Surfaces
 
     - Edge lengths alone: `angle_defect`, `wald`, `geodesic_stars`; `intrinsic` with `flow`, `powers`, `arcs`,
       `length_noise`, `unseen`.
-    - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale`, `patch_tasks`.
+    - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale`, `patch_tasks`, `ends`.
     - Both: `lifted`; `auto` with `unresolved`.
     - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`, `flat`, `strays`.
 Points without a mesh

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from rinow._executor import SerialExecutor
 from rinow.curvature.cloud_sheet import Cloud
+from rinow.curvature.ends import repair_ends
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks
@@ -15,7 +16,6 @@ from rinow.curvature.sectional import (
     EDGE_RINGS,
     QUALITIES,
     blended_patches,
-    repair_ends,
     shrinkage,
     standard_errors,
 )

@@ -10,23 +10,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
-from rinow.curvature.angle_defect import longest_edges, ring_deviations
 from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, sizes_of_discs
+from rinow.curvature.ends import repair_ends
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, levelled, sample, scales, select, windows
 from rinow.curvature.sheet import patch_sheet
-from rinow.curvature.stencils import N_BLOCKS, empty_frames, rings_around, stencil_surface
+from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
-from rinow.kernels import balls, patch_driver, patch_fits, patches, quadrics, risks
+from rinow.kernels import balls, patch_driver, patch_fits, patches, risks
 from rinow.mesh import TriangleMesh
 
 __all__ = [
     "EDGE_RINGS",
     "QUALITIES",
     "blended_patches",
-    "repair_ends",
     "sectional",
     "shrinkage",
     "standard_errors",
@@ -172,14 +171,6 @@ def sectional(
     return estimate
 
 
-def repair_ends(mesh: TriangleMesh, estimate: Estimate, fill: bool) -> None:
-    """Undefine what no edge at the boundary can have, and fill in where no patch has a fit."""
-    _doubt_ends(mesh, estimate)
-    if fill:
-        _fill_in(mesh, estimate)
-        _doubt_ends(mesh, estimate)
-
-
 def blended_patches(
     sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, at_edge: NDArray[np.bool_], tasks: Tasks
 ) -> tuple[Floats, Floats, Floats, Floats]:
@@ -268,40 +259,3 @@ def _spread_out(values: Floats, index: NDArray[np.intp], n: int) -> Floats:
     out = np.full((n, *values.shape[1:]), np.nan)
     out[index] = values
     return out
-
-
-def _doubt_ends(mesh: TriangleMesh, estimate: Estimate) -> None:
-    """Undefine curvatures at the boundary that no edge there can have: a chord is at most the diameter of its circle.
-
-    The few points on one side of a short boundary may lie almost on a line, and show any curvature then.
-    """
-    t = mesh.topology
-    at_ends = np.flatnonzero(t.vertex_is_boundary & np.isfinite(estimate.gaussian))
-    if not len(at_ends):
-        return
-    edges, shortest = t.edges[t.vertex_is_boundary[t.edges].any(axis=1)], np.full(mesh.n_vertices, np.inf)
-    lengths = np.linalg.norm(np.subtract(*mesh.vertices[edges.T]), axis=1)
-    np.minimum.at(shortest, edges.ravel(), np.repeat(lengths, 2))
-    largest = np.maximum(np.abs(estimate.k1[at_ends]), np.abs(estimate.k2[at_ends]))  # type: ignore[index]
-    estimate.gaussian[at_ends[largest * shortest[at_ends] > 2.0]] = np.nan
-
-
-def _fill_in(mesh: TriangleMesh, estimate: Estimate) -> None:
-    """Take two rings and a quadric, or Euler's formula alone, where no patch has a fit.
-
-    What neighbours with a fit differ by is all that tells an error there.
-    """
-    has_fit = np.isfinite(estimate.gaussian)
-    rows = np.flatnonzero(~has_fit & mesh.topology.vertex_is_used)
-    if not len(rows):
-        return
-    frames = empty_frames(len(rows))
-    quadrics.ring_quadrics(rows, stencil_surface(mesh), True, N_BLOCKS, frames)
-    estimate.gaussian[rows] = frames.k1 * frames.k2
-    estimate.radius[rows] = longest_edges(mesh)[rows]
-    beside_fits, deviations = rings_around(mesh.topology, has_fit, 1), ring_deviations(mesh, estimate.gaussian)
-    estimate.spread[rows] = np.where(beside_fits, deviations, np.nan)[rows]
-    for name in ("k1", "k2", "direction1", "direction2"):
-        getattr(estimate, name)[rows] = getattr(frames, name)
-    if estimate.mean is not None:
-        estimate.mean[rows] = 0.5 * (frames.k1 + frames.k2)
