@@ -249,8 +249,7 @@ def test_many_strays_far_above_are_left_out(height):
     strays = torus.vertices[lifted] + height * mesh.mean_edge_length * mesh.vertex_normals[lifted]
     cloud = rinow.point_cloud_curvature(np.concatenate([torus.vertices, strays]))
     is_left_out = cloud.status == VertexStatus.UNRESOLVED
-    # 0.6 by their offsets alone; six spacings above, where strays are each other's neighbours, 0.77 to 0.94 by seed.
-    assert is_left_out[n:].mean() > 0.8 and is_left_out[:n].mean() < 0.01
+    assert is_left_out[n:].mean() > 0.9 and is_left_out[:n].mean() < 0.01  # 0.6 by their offsets alone
 
 
 def test_sheets_five_spacings_apart_are_two():
