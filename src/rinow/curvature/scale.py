@@ -102,9 +102,7 @@ class Samples(NamedTuple):
     spacing: Floats
 
 
-def sample(
-    sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, sizes: NDArray[np.intp] | None = None
-) -> Samples:
+def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, sizes: Ints | None = None) -> Samples:
     """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices."""
     from scipy.sparse import csr_array
 

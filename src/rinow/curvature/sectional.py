@@ -147,9 +147,7 @@ def sectional(
         tasks.report = lambda share: progress(int(min(share, 0.99) * n), n)
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
     at_edge = rings_around(mesh.topology, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
-    component = mesh.topology.components
-    sizes = np.bincount(component + 1)[component + 1][index]
-    samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks, sizes)
+    samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks, _sizes_of_components(mesh)[index])
     out, direction1, direction2, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
     out[:, 0] *= shrinkage(samples, out)
     columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
@@ -187,9 +185,11 @@ def blended_patches(
     choice = levelled(frames, _safe(choice, beside, ladder), over_plane)
     high = high[centres] + np.where(beside, EDGE_RADII, 0)
     window = *_widened(low[centres], high, top[centres], len(ladder.reaches)), at_centres
+    del between, low, top, logs, plane, over_plane  # the searches need the memory
     for search, is_own in ((INSIDE, ~beside & quality.selects), (BESIDE, beside)):
         if is_own.any():
-            _look(search, np.flatnonzero(is_own), sheet, ladder, centres, core, window, frames, choice, tasks)
+            own = slice(None) if is_own.all() else np.flatnonzero(is_own)  # a view of all centres costs no memory
+            _look(search, own, sheet, ladder, centres, core, window, frames, choice, tasks)
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
@@ -216,19 +216,20 @@ def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
 
 
 def _look(
-    search: Search, own: NDArray[np.intp], sheet: balls.Sheet, ladder: Ladder, centres: Ints, core: Floats,
+    search: Search, own: slice | NDArray[np.intp], sheet: balls.Sheet, ladder: Ladder, centres: Ints, core: Floats,
     window: tuple[Ints, Ints, Ints, Floats], frames: Floats, choice: Choice, tasks: Tasks,
 ) -> None:  # fmt: skip
     """Let some of the centres choose by themselves, in place."""
     few = centres[own]
     low, high, top, noise = window[0][own], window[1][own], window[2][own], window[3][own]
     links = members_of_discs(sheet, few, few, search.around * core[own])
-    tasks.part = len(own) / len(centres) / search.rounds
+    tasks.part = len(few) / len(centres) / search.rounds
     for _ in range(search.rounds):
         last = Choice(choice.radius[own], choice.order[own], choice.risk[own])
-        is_level = ~frames[own, 9:].any(axis=1)
-        frames[own] = ladder.frames(sheet, few, frames[own], last, tasks)
-        frames[own[is_level], 9:] = 0.0
+        own_frames = ladder.frames(sheet, few, frames[own], last, tasks)
+        own_frames[~frames[own, 9:].any(axis=1), 9:] = 0.0
+        frames[own] = own_frames
+        del own_frames
         found = select(sheet, ladder, few, frames[own], (low, high, top, noise), links, PASSES, search.errors_of, tasks)
         choice.radius[own], choice.order[own], choice.risk[own] = found
         has_fit = found.radius >= 0
@@ -252,6 +253,12 @@ def shrinkage(samples: Samples, out: Floats) -> Floats:
     risks.disc_shrinkage(samples.member_starts, samples.members, out[:, 0], out[:, 2], factors)
     risks.vertex_means(samples.starts, samples.near, factors, shrinkage)
     return shrinkage
+
+
+def _sizes_of_components(mesh: TriangleMesh) -> NDArray[np.int32]:
+    """(n_vertices,): how many vertices the component of each has."""
+    component = mesh.topology.components
+    return np.bincount(component + 1).astype(np.int32)[component + 1]
 
 
 def _spread_out(values: Floats, index: NDArray[np.intp], n: int) -> Floats:
