@@ -54,10 +54,12 @@ class Approximation(OneLine):
 
     Attributes
     ----------
-    found, proof_checked : bool or None
-        As of an `EpsilonIsometry`.
+    found : bool or None
+        Whether there is one; None when the time was over before either was proved.
     pairs : (k, 2) ndarray of int
         Points of the two nets that correspond; empty unless `found` is true.
+    proof_checked : bool or None
+        Whether the proof of a "no" by a clause-learning solver was checked; None where no solver gave it.
     """
 
     found: bool | None
@@ -133,12 +135,16 @@ def find_approximation(
 
     Parameters
     ----------
-    X, Y, time_limit, verify
-        As in `find_epsilon_isometry`.
+    X, Y : MetricSpace or square array_like of float
+        Two finite metric spaces.
     epsilon : float
         Largest distance of a point from the net of its space, at least 0.
     delta : float
         Above 0; distances of corresponding points differ by less than this.
+    time_limit : float, default 60
+        Seconds after which the question is left undecided.
+    verify : bool, default False
+        As in `find_epsilon_isometry`.
 
     Returns
     -------
