@@ -85,13 +85,13 @@ def surface_scene(
     origin, step = _grid(study.positions[is_finite], study.positions[shown])
     positions = np.rint((np.where(is_finite[:, None], study.positions, origin) - origin) / step)
     in_frame = positions[shown] if shown.any() else np.zeros((1, 3))
-    fields = study.fields(field)
+    fields, areas = study.fields(field), study.areas
     arrays: dict[str, NDArray[Any]] = {
         "positions": positions.astype(np.uint32),
         **shape,
         "status": study.curvature.status,
-        **{name: compact(values) for name, values in {"areas": study.areas, **fields}.items()},
-        **_directions(study, origin),
+        **{name: compact(values) for name, values in {"areas": areas, **fields}.items()},
+        **_directions(study, origin, float(areas.sum())),
         **(_lines_and_points(features) if features else {}),
     }
     entries, data = pack(arrays)
@@ -110,7 +110,7 @@ def surface_scene(
         "unit": study.unit,
         "undefined": [round(255 * c) for c in UNDEFINED_GREY],
         "statuses": STATUSES,
-        "fields": [_field(name, values, study.areas, study.unit) for name, values in fields.items()],
+        "fields": [_field(name, values, areas, study.unit) for name, values in fields.items()],
         "maps": {name: _colour_map(name) for name in ("RdBu_r", "viridis")},
     }
     return Scene(header, data)
@@ -199,13 +199,13 @@ def pack(arrays: Mapping[str, NDArray[Any]]) -> tuple[list[dict[str, Any]], str]
     return entries, base64.b64encode(gzip.compress(b"".join(blocks), COMPRESSION, mtime=0)).decode("ascii")
 
 
-def _directions(study: SurfaceStudy | PointStudy, origin: Floats) -> dict[str, NDArray[Any]]:
+def _directions(study: SurfaceStudy | PointStudy, origin: Floats, area: float) -> dict[str, NDArray[Any]]:
     """Principal directions at vertices all over the surface, rounded; nothing if no vertex has any."""
     both = {name: np.asarray(getattr(study.curvature, name)) for name in ("direction1", "direction2")}
     known = np.flatnonzero(np.isfinite(np.hstack(list(both.values()))).all(axis=1))
     if len(known) == 0:
         return {}
-    cell = float(np.sqrt(study.areas.sum() / MOST_DIRECTIONS))
+    cell = float(np.sqrt(area / MOST_DIRECTIONS))
     chosen = known
     while len(chosen) > MOST_DIRECTIONS:
         i, j, k = np.floor((study.positions[known] - origin) / cell).astype(np.int64).T
