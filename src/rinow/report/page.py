@@ -30,6 +30,7 @@ SCRIPTS = (
     "colours.js",
     "shaders.js",
     "geometry.js",
+    "picker.js",
     "viewer.js",
     "picture.js",
     "keys.js",

@@ -60,7 +60,7 @@ class Page {
       const moved = start && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY);
       if (start && moved < DRAG && event.button === 0) {
         this.pointer = event;
-        this.hold(this.viewer.pick(event.offsetX, event.offsetY));
+        this.hold(this.viewer.picker.vertexAt(event.offsetX, event.offsetY));
         this.hover();
       }
       start = undefined;
@@ -181,7 +181,7 @@ class Page {
   hover() {
     this.hovering = undefined;
     const at = this.pointer;
-    const vertex = at ? this.viewer.pick(at.offsetX, at.offsetY) : -1;
+    const vertex = at ? this.viewer.picker.vertexAt(at.offsetX, at.offsetY) : -1;
     $("tip").hidden = vertex < 0;
     if (vertex >= 0) {
       const f = this.field;

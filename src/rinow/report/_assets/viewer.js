@@ -1,5 +1,5 @@
 "use strict";
-// The surface, or the points of a cloud, in three dimensions: drawing, moving, and which vertex is under the pointer.
+// The surface, or the points of a cloud, in three dimensions: drawing and moving.
 
 const HALF_DIAGONAL = 0.9; // of the unit cube, and a little more
 const MARGIN = 1.12; // around the surface at first
@@ -23,11 +23,7 @@ class Viewer {
     this.world.add((this.marker = this.makePoints([0], MARK_FRAGMENT, 15)));
     this.marker.visible = false;
     this.camera = new THREE.PerspectiveCamera(24, 1);
-    this.pickTarget = new THREE.WebGLRenderTarget(1, 1);
-    this.pickMaterial = new THREE.ShaderMaterial({
-      glslVersion: THREE.GLSL3, vertexShader: PICK_VERTEX, fragmentShader: PICK_FRAGMENT,
-      side: THREE.DoubleSide, blending: THREE.NoBlending, uniforms: this.uniforms, defines: this.defines(),
-    });
+    this.picker = new Picker(this);
     this.reset(scene.up);
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     this.resize();
@@ -222,20 +218,20 @@ class Viewer {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.pickTarget.setSize(width, height);
+    this.picker.resize(width, height);
     this.drawNow();
   }
 
   /** Draw before the next frame of the screen, once however often it is asked for. */
   draw() {
-    this.pickIsStale = true;
+    this.picker.isStale = true;
     this.frame ??= requestAnimationFrame(() => this.drawNow());
   }
 
   drawNow() {
     if (this.frame) cancelAnimationFrame(this.frame);
     this.frame = undefined;
-    this.pickIsStale = true;
+    this.picker.isStale = true;
     const distance = this.camera.position.length();
     this.camera.near = Math.max(0.003, distance - HALF_DIAGONAL);
     this.camera.far = distance + HALF_DIAGONAL;
@@ -253,55 +249,5 @@ class Viewer {
   snapshot() {
     this.drawNow();
     return this.canvas;
-  }
-
-  /** The vertex nearest to a place on the canvas, of the face seen there; -1 beside the surface. */
-  pick(x, y) {
-    const { width, height } = this.pickTarget;
-    if (this.pickIsStale) this.drawPickTarget();
-    const bytes = new Uint8Array(4);
-    this.renderer.readRenderTargetPixels(this.pickTarget, Math.floor(x), height - 1 - Math.floor(y), 1, 1, bytes);
-    const last = (bytes[0] | (bytes[1] << 8) | (bytes[2] << 16) | (bytes[3] << 24)) - 1;
-    if (last < 0 || this.isCloud) return last;
-    const ray = new THREE.Raycaster();
-    ray.setFromCamera(new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
-    return this.nearestCorner(last, ray.ray);
-  }
-
-  drawPickTarget() {
-    const hidden = this.world.children.filter((object) => object !== this.surface && object.visible);
-    for (const object of hidden) object.visible = false;
-    const material = this.surface.material;
-    this.surface.material = this.pickMaterial;
-    this.scaleDiscs(this.pickTarget.height);
-    this.renderer.setRenderTarget(this.pickTarget);
-    this.renderer.clear();
-    this.renderer.render(this.world, this.camera);
-    this.renderer.setRenderTarget(null);
-    this.surface.material = material;
-    for (const object of hidden) object.visible = true;
-    this.pickIsStale = false;
-  }
-
-  /** Among the faces whose last corner is `last`, the one that the ray meets first; its corner nearest to there. */
-  nearestCorner(last, ray) {
-    const { faces } = this.arrays;
-    this.facesByLast ??= rowsByLastCorner(faces, this.places.length / 3);
-    const { offsets, rows } = this.facesByLast;
-    const corners = [0, 1, 2].map(() => new THREE.Vector3());
-    const hit = new THREE.Vector3();
-    let best = last;
-    let nearest = Infinity;
-    for (let r = offsets[last]; r < offsets[last + 1]; r++) {
-      const face = faces.subarray(3 * rows[r], 3 * rows[r] + 3);
-      corners.forEach((corner, k) => corner.set(...this.placeOf(face[k])));
-      if (!ray.intersectTriangle(...corners, false, hit)) continue;
-      const distance = hit.distanceTo(ray.origin);
-      if (distance >= nearest) continue;
-      nearest = distance;
-      const gaps = corners.map((corner) => corner.distanceTo(hit));
-      best = face[gaps.indexOf(Math.min(...gaps))];
-    }
-    return best;
   }
 }
