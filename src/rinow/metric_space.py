@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array, csr_array, issparse
+from scipy.sparse import issparse
 from scipy.sparse.csgraph import shortest_path
 from scipy.spatial.distance import pdist, squareform
 
 from rinow import tolerances
 from rinow._arrays import (
     as_distance_matrix,
-    as_floats,
     as_indices,
     as_number,
     as_points,
@@ -25,13 +24,13 @@ from rinow._arrays import (
 )
 from rinow.errors import InvalidInputError, NotAMetricError, naming
 from rinow.kernels import metrics
+from rinow.metric_graph import graph_edge_lengths
 
 __all__ = [
     "MetricSpace",
     "as_metric_space",
     "both_distances",
     "finite_distances",
-    "graph_edge_lengths",
     "trusted_metric_space",
 ]
 
@@ -278,31 +277,3 @@ def _check_triangle_inequality(D: Floats, rtol: float) -> None:
             f"{D[i, k] + D[k, j]:.17g}; repair the triangle inequality (shortest paths do) or raise rtol.",
             witness=(i, k, j),
         )
-
-
-def graph_edge_lengths(graph: Any) -> csr_array:
-    """The lengths of the edges as a sparse matrix; zeros are kept, parallel edges reduced to the shortest."""
-    if issparse(graph):
-        edges = coo_array(graph)
-        tails, heads, lengths = edges.row, edges.col, edges.data
-        n_rows, n_columns = graph.shape
-    elif hasattr(graph, "nodes") and hasattr(graph, "edges"):
-        number = {node: i for i, node in enumerate(graph.nodes)}
-        rows = [(number[u], number[v], w) for u, v, w in graph.edges(data="weight", default=1.0)]
-        tails, heads, lengths = zip(*rows, strict=True) if rows else ((), (), ())
-        n_rows = n_columns = len(number)
-    else:
-        raise InvalidInputError(f"graph is a {type(graph).__name__}; give a scipy sparse matrix or a networkx graph.")
-    if n_rows != n_columns or n_rows == 0:
-        raise InvalidInputError(
-            f"graph has shape ({n_rows}, {n_columns}); give a square matrix with at least one node."
-        )
-    weights = as_floats(lengths, "graph")
-    wrong = np.flatnonzero(~(weights >= 0))
-    if len(wrong):
-        e = wrong[0]
-        raise InvalidInputError(f"graph[{tails[e]}, {heads[e]}] = {weights[e]} is not a length; give numbers >= 0.")
-    order = np.lexsort((weights, heads, tails))
-    pairs = np.stack([tails, heads]).astype(np.intp)[:, order]
-    shortest = np.r_[True, (np.diff(pairs) != 0).any(axis=0)][: len(order)]
-    return csr_array((weights[order][shortest], pairs[:, shortest]), shape=(n_rows, n_rows))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.kernels import graphs
-from rinow.metric_space import graph_edge_lengths
+from rinow.metric_graph import graph_edge_lengths
 
 __all__ = ["Arcs", "as_arcs"]
 

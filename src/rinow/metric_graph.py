@@ -1,0 +1,41 @@
+"""Metric graphs: a graph whose edges have lengths."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array, issparse
+
+from rinow._arrays import as_floats
+from rinow.errors import InvalidInputError
+
+__all__ = ["graph_edge_lengths"]
+
+
+def graph_edge_lengths(graph: Any) -> csr_array:
+    """The lengths of the edges as a sparse matrix; zeros are kept, parallel edges reduced to the shortest."""
+    if issparse(graph):
+        edges = coo_array(graph)
+        tails, heads, lengths = edges.row, edges.col, edges.data
+        n_rows, n_columns = graph.shape
+    elif hasattr(graph, "nodes") and hasattr(graph, "edges"):
+        number = {node: i for i, node in enumerate(graph.nodes)}
+        rows = [(number[u], number[v], w) for u, v, w in graph.edges(data="weight", default=1.0)]
+        tails, heads, lengths = zip(*rows, strict=True) if rows else ((), (), ())
+        n_rows = n_columns = len(number)
+    else:
+        raise InvalidInputError(f"graph is a {type(graph).__name__}; give a scipy sparse matrix or a networkx graph.")
+    if n_rows != n_columns or n_rows == 0:
+        raise InvalidInputError(
+            f"graph has shape ({n_rows}, {n_columns}); give a square matrix with at least one node."
+        )
+    weights = as_floats(lengths, "graph")
+    wrong = np.flatnonzero(~(weights >= 0))
+    if len(wrong):
+        e = wrong[0]
+        raise InvalidInputError(f"graph[{tails[e]}, {heads[e]}] = {weights[e]} is not a length; give numbers >= 0.")
+    order = np.lexsort((weights, heads, tails))
+    pairs = np.stack([tails, heads]).astype(np.intp)[:, order]
+    shortest = np.r_[True, (np.diff(pairs) != 0).any(axis=0)][: len(order)]
+    return csr_array((weights[order][shortest], pairs[:, shortest]), shape=(n_rows, n_rows))
