@@ -45,6 +45,11 @@ def pairs(n_vertices: int) -> dict[str, tuple[Mesh, Mesh]]:
         """A sphere near the centre of the other one, of which all points are nearly as far from it."""
         return size * (other_sphere[0] + (0.3, -0.1, 0.2)), other_sphere[1]
 
+    def with_shell(size: float) -> Mesh:
+        """The same together with a sphere around the other one, half of the faces each."""
+        V, F = fibonacci_sphere(n_vertices // 2, 1.0, 1.0)
+        return np.concatenate([1.2 * V, size * (V + (0.3, -0.1, 0.2))]), np.concatenate([F, F + len(V)])
+
     return {
         "two meshes of one torus": (torus, other),
         "torus and noisy torus": (torus, (torus[0] + 0.2 * h * noise, torus[1])),
@@ -55,6 +60,7 @@ def pairs(n_vertices: int) -> dict[str, tuple[Mesh, Mesh]]:
         "torus and shifted torus": (torus, (torus[0] + 0.05, torus[1])),
         "torus and itself": (torus, torus),
         **{f"sphere, {size:g} of it inside": (inside(size), sphere) for size in (0.1, 1e-2, 1e-4, 1e-6)},
+        "sphere, inside and around it": (with_shell(1e-4), sphere),
     }
 
 

@@ -76,10 +76,17 @@ class PolyhedralSurface(OneLine):
 
     @cached_property
     def vertex_areas(self) -> Floats:
-        """(n_vertices,): one third of the incident area; 0 without a face."""
-        t = self.topology
-        total = np.empty(self.n_vertices)
-        triangles.vertex_sums_of_faces(self.face_areas, t.corner_offsets, t.vertex_corners, total)
+        """(n_vertices,): one third of the incident area; 0 without a face.
+
+        Below 1e-308 and above 1e308 there is no number but 0 and inf.
+        """
+        return read_only(in_unit(self.scaled_vertex_areas, 2 * self._safe_lengths[1]))
+
+    @cached_property
+    def scaled_vertex_areas(self) -> Floats:
+        """(n_vertices,): the same in a unit in which meshes of any size have numbers."""
+        t, total = self.topology, np.empty(self.n_vertices)
+        triangles.vertex_sums_of_faces(self._angles_and_areas[1], t.corner_offsets, t.vertex_corners, total)
         return read_only(total / 3.0)
 
     @cached_property

@@ -37,6 +37,18 @@ def test_moved_copies_with_noise_are_matched(dimension, seed):
     assert distortion(interval.pairs, X, Y) == interval.upper
 
 
+def test_a_moved_copy_of_hundreds_of_points_is_found():
+    """Eigenvalues by iteration; the ranking of the rotations looks at some of the points only."""
+    rng = np.random.default_rng(9)
+    points, order = rng.random((600, 3)) * [2.0, 1.5, 1.0], rng.permutation(600)
+    moved = points[order] @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    X, Y = squareform(pdist(points)), squareform(pdist(moved))
+    assert np.abs(squareform(pdist(coordinates(X))) - X).max() < 1e-9 * X.max()  # iterations stop before rounding
+    interval = first_interval(X, Y, 0.0)
+    align(X, Y, interval, Clock(math.inf))
+    assert interval.upper < 1e-12 * X.max()
+
+
 def test_spaces_of_few_points_and_no_time():
     X = np.zeros((1, 1))
     for Y in (X, np.zeros((3, 3)), np.array([[0.0, 2.0], [2.0, 0.0]])):

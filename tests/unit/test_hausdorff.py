@@ -162,7 +162,7 @@ def leaves_looked_into(surface, point):
         sum(gap(i) < nearest for i in boxes)
         for gap in (
             lambda i: box_trees.box_gap(surface.tree.boxes, i, *point),
-            lambda i: box_trees.gap_of(surface.tree, i, *point),
+            lambda i: box_trees.gap_of(surface.tree, i, *point, box_trees.is_surrounded(surface.tree, *point)),
         )
     ]
 
@@ -175,6 +175,18 @@ def test_few_boxes_of_a_sphere_are_looked_into_from_near_its_centre(size):
     without, seen = np.mean([leaves_looked_into(surface, p) for p in frame.enter(inner)], axis=0)
     assert seen <= 0.01 * (1 << surface.tree.depth)
     assert without >= (1 if size > 0.05 else 20) * seen
+
+
+@pytest.mark.parametrize("size", [1e-2, 1e-6])
+def test_few_boxes_are_looked_into_from_a_tiny_part_of_a_mesh_that_reaches_outside(size):
+    sphere, inner = irregular_sphere(3000, seed=6), size * irregular_sphere(60, seed=7).vertices
+    outer = 1.5 * irregular_sphere(1000, seed=8).vertices
+    frame = frame_of(sphere.vertices, outer)
+    surface = surface_of_mesh(rinow.TriangleMesh(sphere.vertices, sphere.faces), frame)
+    surface = surface.seen_from(frame.enter(np.concatenate([outer, inner])))
+    without, seen = np.mean([leaves_looked_into(surface, p) for p in frame.enter(inner)], axis=0)
+    assert seen <= 0.01 * (1 << surface.tree.depth)
+    assert without >= 20 * seen
 
 
 def test_a_view_tells_no_more_than_is_true():

@@ -155,6 +155,20 @@ def test_units_and_motions_and_numbering_change_nothing():
         assert set(moved.corners) == set(order[found.corners])
 
 
+@pytest.mark.parametrize("exponent", [-900, -532, 0, 532, 900])
+def test_cone_points_of_meshes_whose_areas_are_no_numbers(exponent):
+    """Powers of two change no digit of a length."""
+    part = SOLIDS["cone"](0.15)
+    angles = features_of(part).cone_angles
+    scaled = rinow.TriangleMesh(np.ldexp(part.vertices, exponent), part.faces)
+    found = rinow.singular_features(scaled)
+    assert set(found.cone_points) == set(part.cone_points)
+    np.testing.assert_allclose(found.cone_angles, angles, rtol=1e-9)
+    areas = rinow.TriangleMesh(part.vertices, part.faces).vertex_areas
+    with np.errstate(over="ignore", under="ignore"):
+        np.testing.assert_allclose(scaled.vertex_areas, np.ldexp(areas, 2 * exponent), rtol=1e-12)
+
+
 def test_reversed_faces_and_a_turned_face_change_nothing():
     part = parts.box(0.25)
     found = features_of(part)

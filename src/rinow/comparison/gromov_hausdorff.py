@@ -210,7 +210,7 @@ def _compare(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
         return
     interval.raise_lower(bounds.packing_bound(DX, DY), "packing")
     interval.raise_lower(bounds.single_linkage_bound(DX, DY), "single linkage")
-    align(DX, DY, interval, clock.part(0.1 * clock.left))
+    align(DX, DY, interval, clock.part(0.2 * clock.left))
     if len(DX) * len(DY) * (len(DX) + len(DY)) < large.LARGE:
         engine = Engine(DX, DY, clock=clock.part(0.3 * clock.left))
         interval.raise_lower(engine.row_bound, "sorted distances")

@@ -21,6 +21,8 @@ Indices = NDArray[np.intp]
 ROUNDING = 64 * 2.0**-53
 """Error of a distance between points of a frame of size 1."""
 
+SAMPLE = 128
+"""Points asked for the part that a surface surrounds most widely."""
 
 LARGEST_SIZE = 1e307
 """Half the extent of sets whose distances are numbers."""
@@ -89,16 +91,22 @@ class Surface:
         return nearest, distances
 
     def seen_from(self, points: Floats) -> Surface:
-        """The same surface, made ready for questions from points that it surrounds or that lie close together.
+        """The same surface, made ready for questions from the part of some points that it surrounds most widely.
 
         Boxes nearly as far from a point as the nearest one are many if the point is near the centre of a sphere; the
-        directions in which they lie tell more.
+        directions in which they lie tell more.  Neighbours in the list lie close together, so that a part which no
+        sample hits has few points, and costs little.
         """
-        eye = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        _, (empty,) = self.nearest(eye[None], np.zeros(1, np.intp))
-        if np.linalg.norm(points - eye, axis=1).max() >= empty:
+        sample = points[:: -(-len(points) // SAMPLE)]
+        _, gaps = self.nearest(sample, np.arange(len(sample)))
+        deepest = gaps.argmax()
+        part = sample[np.linalg.norm(sample - sample[deepest], axis=1) <= 0.5 * gaps[deepest]]
+        eye = 0.5 * (part.min(axis=0) + part.max(axis=0))
+        clear = float(self.nearest(eye[None], np.zeros(1, np.intp))[1][0])
+        if clear == 0.0:
             return self
-        tree = self.tree._replace(eye=eye, views=np.empty((len(self.tree.boxes), box_trees.VIEW)))
+        views = np.empty((len(self.tree.boxes), box_trees.VIEW))
+        tree = self.tree._replace(eye=eye, views=views, clear=clear)
         box_trees.bound_views(tree)
         return replace(self, tree=tree)
 
@@ -144,5 +152,5 @@ def _sorted(points: Floats, triangles: Indices) -> Surface:
     box_trees.bound_boxes(corners, depth, boxes)
     corner_points = np.ascontiguousarray(triangles[order])
     used, first = np.unique(corner_points, return_index=True)
-    tree = BoxTree(corners, order, boxes, depth, np.zeros(3), np.empty((0, box_trees.VIEW)))
+    tree = BoxTree(corners, order, boxes, depth, np.zeros(3), np.empty((0, box_trees.VIEW)), 0.0)
     return Surface(points, used[np.argsort(first)], corner_points, tree)

@@ -51,7 +51,7 @@ def cone_defects(mesh: TriangleMesh | IntrinsicMesh, closed: Bools) -> tuple[Ind
         t.neighbours,
         closed,
         defects,
-        mesh.vertex_areas,
+        mesh.scaled_vertex_areas,
         N_BLOCKS,
         excess,
         noise,

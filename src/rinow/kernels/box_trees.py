@@ -34,6 +34,7 @@ class BoxTree(NamedTuple):
     eye: np.ndarray  # (3,), a point from which the boxes were looked at
     views: np.ndarray  # (2 leaves, VIEW): least and greatest coordinates of the unit vectors to the eye, least height
     # of the eye in them; or (0, VIEW)
+    clear: float  # distance of the triangles from the eye: points within it use the views; 0 without them
 
 
 @kernel
@@ -171,10 +172,16 @@ def gap_of_view(tree, i, x, y, z):
 
 
 @kernel
-def gap_of(tree, i, x, y, z):
+def is_surrounded(tree, x, y, z):
+    """Whether a point is nearer to the eye than all triangles, so that the views tell much."""
+    return _square(x - tree.eye[0], y - tree.eye[1], z - tree.eye[2]) < tree.clear * tree.clear
+
+
+@kernel
+def gap_of(tree, i, x, y, z, surrounded):
     """Lower bound of the squared distance of a point from the triangles in a box."""
     gap = box_gap(tree.boxes, i, x, y, z)
-    return max(gap, gap_of_view(tree, i, x, y, z)) if len(tree.views) > 0 else gap
+    return max(gap, gap_of_view(tree, i, x, y, z)) if surrounded else gap
 
 
 @kernel
@@ -199,9 +206,9 @@ def box_gap(boxes, i, x, y, z):
 @kernel
 def nearest_triangle(tree, x, y, z, hint, stack, gaps):
     """Nearest triangle to a point and its squared distance; `hint` is any triangle, the nearer the faster."""
-    n, leaves = tree.corners.shape[0], 1 << tree.depth
+    n, leaves, surrounded = tree.corners.shape[0], 1 << tree.depth, is_surrounded(tree, x, y, z)
     best, nearest = triangle_gap(tree.corners, hint, x, y, z), hint
-    stack[0], gaps[0], top = 1, gap_of(tree, 1, x, y, z), 1
+    stack[0], gaps[0], top = 1, gap_of(tree, 1, x, y, z, surrounded), 1
     while top > 0:
         top -= 1
         i = stack[top]
@@ -213,7 +220,7 @@ def nearest_triangle(tree, x, y, z, hint, stack, gaps):
                 if gap < best:
                     best, nearest = gap, t
             continue
-        left, right = gap_of(tree, 2 * i, x, y, z), gap_of(tree, 2 * i + 1, x, y, z)
+        left, right = gap_of(tree, 2 * i, x, y, z, surrounded), gap_of(tree, 2 * i + 1, x, y, z, surrounded)
         near = 2 * i if left <= right else 2 * i + 1
         if max(left, right) < best:
             stack[top], gaps[top] = 4 * i + 1 - near, max(left, right)
