@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from rinow.curvature.cloud_facing import facing
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import cloud_layers, cloud_strays, clouds
 
@@ -37,6 +38,7 @@ of a fifth of the spacing leaves half of it."""
 LEAST_CLAIMS, MOST_LOST = 18, 0.5
 """Points that must have a lost one on their sheets for it to be one of them, and the share of lost points from which
 nothing around is known."""
+TOLD = 0.7
 BETWEEN = 0.25
 """Share of its neighbours that gaps part from others from which on a point without such a gap is between two sheets."""
 
@@ -91,20 +93,32 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     close = near.distances[:, :N_NEAR].mean(axis=1)
     is_far = close > FAR * np.median(close[near.indices[:, :N_NEAR]], axis=1)
     normals, offsets, middles, largest = np.empty_like(points), np.empty(n), np.empty(n), np.empty(n)
-    clouds.plane_normals(points, near.indices, normals)
+    clouds.plane_normals(points, near.indices, NEAREST, normals)
     cloud_strays.offsets(points, normals, near.indices, near.distances[:, -1], N_BLOCKS, offsets, middles, largest)
     spacing = np.sqrt(np.pi / (NEAREST + 0.5)) * near.distances[:, -1]
     is_beside = offsets > np.maximum(DEVIATIONS * np.median(middles[near.indices], axis=1), SPACINGS * spacing)
     is_alone = np.count_nonzero(is_beside[near.indices[:, :N_NEAR]], axis=1) <= ALONE
     is_sparse = close > SPARSE * np.quantile(close[near.indices], 0.25, axis=1)
     farthest = np.maximum(offsets, largest) / spacing
-    is_unclear, is_lost = _follow_sheets(points, near, np.flatnonzero(farthest > SPACINGS), farthest > THICK)
-    is_stray = is_far | (is_beside & (is_sparse | (is_alone & is_unclear)))
-    return _first(near, around), is_stray, is_lost & ~is_stray
+    layered = Near(near.distances.copy(), near.indices.copy())
+    is_unclear, is_lost = _follow_sheets(points, layered, np.flatnonzero(farthest > SPACINGS), farthest > THICK)
+    near, is_told = _more_agreed(points, near, layered)
+    is_stray = is_far | (is_beside & (is_sparse | (is_alone & is_unclear & ~is_told)))
+    return _first(near, around), is_stray, is_lost & ~is_stray & ~is_told
 
 
 def _first(near: Near, count: int) -> Near:
     return Near(near.distances[:, :count].copy(), near.indices[:, :count].copy())
+
+
+def _more_agreed(points: Floats, near: Near, layered: Near) -> tuple[Near, Bools]:
+    """Those of the nearest points, or of those on the sheets followed, on which stars agree more; where the nearest."""
+    rows, agreement = facing(points, near.indices)
+    layers, other = facing(points, layered.indices)
+    share = agreement[near.indices].mean(axis=1)
+    is_told = (share > TOLD) & (share >= other[near.indices].mean(axis=1))
+    distances = np.where(is_told[:, None], near.distances, layered.distances)
+    return Near(distances, np.where(is_told[:, None], rows, layers)), is_told
 
 
 def _follow_sheets(points: Floats, near: Near, owners: Indices, is_thick: Bools) -> tuple[Bools, Bools]:
