@@ -103,7 +103,7 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     layered = Near(near.distances.copy(), near.indices.copy())
     is_unclear, is_lost = _follow_sheets(points, layered, np.flatnonzero(farthest > SPACINGS), farthest > THICK)
     near, is_told = _more_agreed(points, near, layered)
-    is_stray = is_far | (is_beside & (is_sparse | (is_alone & is_unclear & ~is_told)))
+    is_stray = is_far | (is_beside & (is_sparse | (is_alone & is_unclear)))
     return _first(near, around), is_stray, is_lost & ~is_stray & ~is_told
 
 
@@ -114,11 +114,11 @@ def _first(near: Near, count: int) -> Near:
 def _more_agreed(points: Floats, near: Near, layered: Near) -> tuple[Near, Bools]:
     """Those of the nearest points, or of those on the sheets followed, on which stars agree more; where the nearest."""
     rows, agreement = facing(points, near.indices)
-    layers, other = facing(points, layered.indices)
+    _, other = facing(points, layered.indices)
     share = agreement[near.indices].mean(axis=1)
     is_told = (share > TOLD) & (share >= other[near.indices].mean(axis=1))
     distances = np.where(is_told[:, None], near.distances, layered.distances)
-    return Near(distances, np.where(is_told[:, None], rows, layers)), is_told
+    return Near(distances, np.where(is_told[:, None], rows, layered.indices)), is_told
 
 
 def _follow_sheets(points: Floats, near: Near, owners: Indices, is_thick: Bools) -> tuple[Bools, Bools]:
