@@ -116,7 +116,7 @@ def _more_agreed(points: Floats, near: Near, layered: Near) -> tuple[Near, Bools
     rows, agreement = facing(points, near.indices)
     _, other = facing(points, layered.indices)
     share = agreement[near.indices].mean(axis=1)
-    is_told = (share > TOLD) & (share >= other[near.indices].mean(axis=1))
+    is_told = (agreement > 0.0) & (share > TOLD) & (share >= other[near.indices].mean(axis=1))
     distances = np.where(is_told[:, None], near.distances, layered.distances)
     return Near(distances, np.where(is_told[:, None], rows, layered.indices)), is_told
 
