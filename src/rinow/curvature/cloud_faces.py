@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.cloud_holes import taken
-from rinow.curvature.cloud_stars import Stars, triangles_of
+from rinow.curvature.cloud_stars import Stars
 from rinow.kernels import clouds
 
 __all__ = ["agreed_triangles"]
@@ -40,9 +40,15 @@ def agreed_triangles(points: Floats, stars: Stars, reach: Floats) -> Indices:
     two, then of one, small circles before large ones, see `taken`: stars laid over different planes disagree about four
     points on a circle.
     """
-    owners, corners, number, votes = triangles_of(stars)
+    star, counts, n = stars.points, stars.counts, len(points)
+    owner, place = np.nonzero(np.arange(star.shape[1]) < counts[:, None])
+    corners = np.stack([owner, star[owner, place], star[owner, (place + 1) % counts[owner]]], axis=1)
     diameters = np.empty(len(corners))
     clouds.circle_diameters(points, corners, diameters)
-    known = np.flatnonzero(diameters < reach[owners])
-    one = known[np.unique(number[known], return_index=True)[1]]
-    return taken(len(points), corners[one[np.lexsort((diameters[one], -votes[one]))]])
+    known = diameters < reach[owner]
+    corners, diameters = corners[known], diameters[known]
+    first = corners.argmin(axis=1)
+    corners = np.take_along_axis(corners, (first[:, None] + np.arange(3)) % 3, axis=1)
+    sides = np.unique(corners[:, 0] * n + corners[:, 1], return_inverse=True)[1]
+    _, one, votes = np.unique(sides * n + corners[:, 2], return_index=True, return_counts=True)
+    return taken(n, corners[one[np.lexsort((diameters[one], -votes))]])

@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.cloud_faces import agreed_triangles
-from rinow.curvature.cloud_facing import FEW
 from rinow.curvature.cloud_holes import filled
 from rinow.curvature.cloud_signs import outward
-from rinow.curvature.cloud_stars import agreement, links_of, normals_of, stars_over
+from rinow.curvature.cloud_stars import agreement, first_stars, links_of, normals_of, stars_over
 from rinow.curvature.stencils import NEEDLES
-from rinow.kernels import balls, clouds, stencils
+from rinow.kernels import balls, stencils
 
 __all__ = ["Cloud", "cloud_sheet"]
 
@@ -47,9 +46,7 @@ def cloud_sheet(points: Floats, distances: Floats, near: Indices) -> Cloud:
     Normals are the area vectors of these stars, averaged over the neighbours; their signs are carried along the tree
     on which normals turn least; see `cloud_signs` for that of the whole.
     """
-    normals = np.empty_like(points)
-    clouds.plane_normals(points, near, FEW, normals)
-    stars = stars_over(points, normals, near)
+    normals, stars = first_stars(points, near)
     normals = outward(points, normals, links_of(stars))
     stars = stars_over(points, normals, near, stars, SKEW)
     links = links_of(stars)

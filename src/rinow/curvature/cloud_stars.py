@@ -11,10 +11,14 @@ from scipy.sparse import coo_array, csr_array
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import clouds, stencils
 
-__all__ = ["Stars", "agreement", "links_of", "normals_of", "stars_over", "triangles_of"]
+__all__ = ["Stars", "agreement", "first_stars", "links_of", "normals_of", "stars_over"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
+
+
+FEW = 12
+"""Points to which the first plane is fitted: two rings would see around edges."""
 
 
 class Stars(NamedTuple):
@@ -35,6 +39,13 @@ def stars_over(points: Floats, normals: Floats, near: Indices, before: Stars | N
     clouds.long_axes(points, normals, *((star, counts) if before is None else before[:2]), axes)
     clouds.stars(points, normals, axes, skew, near, N_BLOCKS, star, counts, gaps)
     return Stars(star, counts, gaps)
+
+
+def first_stars(points: Floats, near: Indices) -> tuple[Floats, Stars]:
+    """Unit normals, of any signs, of the planes through the first few points near each one, and the stars over them."""
+    normals = np.empty_like(points)
+    clouds.plane_normals(points, near, FEW, normals)
+    return normals, stars_over(points, normals, near)
 
 
 def links_of(stars: Stars) -> csr_array:
@@ -60,32 +71,8 @@ def normals_of(points: Floats, normals: Floats, stars: Stars, links: csr_array, 
     return vectors
 
 
-def triangles_of(stars: Stars) -> tuple[Indices, Indices, Indices, Indices]:
-    """The triangles of successive neighbours in all stars.
-
-    Returns
-    -------
-    owners : (n_triangles,) ndarray of intp
-        The point whose star each triangle is in.
-    corners : (n_triangles, 3) ndarray of intp
-        Its corners, the one of least index first.
-    number : (n_triangles,) ndarray of intp
-        Equal for equal triangles.
-    votes : (n_triangles,) ndarray of intp
-        How many stars it is in: three where those of its corners agree.
-    """
-    n = len(stars.points)
-    owners, place = np.nonzero(np.arange(stars.points.shape[1]) < stars.counts[:, None])
-    second, third = stars.points[owners, place], stars.points[owners, (place + 1) % stars.counts[owners]]
-    corners = np.stack([owners, second, third], axis=1)
-    first = corners.argmin(axis=1)
-    corners = np.take_along_axis(corners, (first[:, None] + np.arange(3)) % 3, axis=1)
-    sides = np.unique(corners[:, 0] * n + corners[:, 1], return_inverse=True)[1]
-    _, number, votes = np.unique(sides * n + corners[:, 2], return_inverse=True, return_counts=True)
-    return owners, corners, number, votes[number]
-
-
 def agreement(stars: Stars) -> Floats:
     """(n,): share of the triangles of each star that are in the stars of all their corners; 0 for none."""
-    owners, _, _, votes = triangles_of(stars)
-    return np.bincount(owners, votes == 3, len(stars.points)) / np.maximum(stars.counts, 1)
+    out = np.empty(len(stars.points))
+    clouds.agreement(stars.points, stars.counts, out)
+    return out

@@ -139,6 +139,36 @@ def stars(points, normals, tangents, skew, near, n_blocks, out, counts, gaps):
 
 
 @parallel_kernel
+def keep_ahead(normals, near, least, out):
+    """Write near[v, j], or v where the cosine of their normals is not above the least one."""
+    for v in prange(near.shape[0]):
+        for j in range(near.shape[1]):
+            w = near[v, j]
+            cosine = normals[v, 0] * normals[w, 0] + normals[v, 1] * normals[w, 1] + normals[v, 2] * normals[w, 2]
+            out[v, j] = w if cosine > least else v
+
+
+@kernel
+def is_side(star, count, p, q):
+    """Whether p and q are next to each other in a star."""
+    for j in range(count):
+        if star[j] == p:
+            return star[(j + 1) % count] == q or star[j - 1 if j > 0 else count - 1] == q
+    return False
+
+
+@parallel_kernel
+def agreement(star, counts, out):
+    """Write the share of the triangles of each star that are in the stars of all their corners; 0 for none."""
+    for v in prange(star.shape[0]):
+        agreed = 0
+        for j in range(counts[v]):
+            p, q = star[v, j], star[v, (j + 1) % counts[v]]
+            agreed += is_side(star[p], counts[p], v, q) and is_side(star[q], counts[q], v, p)
+        out[v] = agreed / max(counts[v], 1)
+
+
+@parallel_kernel
 def star_area_vectors(points, normals, star, counts, out):
     """Write the sum of the doubled area vectors of the triangles of each star that face the way of the normal."""
     for v in prange(points.shape[0]):
