@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.cloud_holes import taken
+from rinow.curvature.cloud_stars import Stars
 from rinow.kernels import clouds
 
 __all__ = ["agreed_triangles"]
@@ -14,17 +15,15 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 
-def agreed_triangles(points: Floats, star: Indices, counts: Indices, reach: Floats) -> Indices:
+def agreed_triangles(points: Floats, stars: Stars, reach: Floats) -> Indices:
     """Triangles of the stars of points, as many as fit together.
 
     Parameters
     ----------
     points : (n, 3) ndarray of float
         Positions.
-    star : (n, k) ndarray of intp
-        Row v begins with the counts[v] neighbours of point v in the order around its normal.
-    counts : (n,) ndarray of intp
-        Numbers of neighbours.
+    stars : Stars
+        Their stars.
     reach : (n,) ndarray of float
         Distance up to which the points around each one were looked at.
 
@@ -41,7 +40,7 @@ def agreed_triangles(points: Floats, star: Indices, counts: Indices, reach: Floa
     two, then of one, small circles before large ones, see `taken`: stars laid over different planes disagree about four
     points on a circle.
     """
-    n = len(points)
+    star, counts, n = stars.points, stars.counts, len(points)
     owner, place = np.nonzero(np.arange(star.shape[1]) < counts[:, None])
     corners = np.stack([owner, star[owner, place], star[owner, (place + 1) % counts[owner]]], axis=1)
     diameters = np.empty(len(corners))

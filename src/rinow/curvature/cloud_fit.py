@@ -29,6 +29,8 @@ __all__ = ["cloud_estimate"]
 UNDECIDED = 1.5
 """Standard error times radius² above which nothing is known, as for metric spaces: points on surfaces stay below 1,
 those that fill a part of space have 2 to 25."""
+AGREED = 0.5
+"""Share of the triangles of a star on which its neighbours agree, above which the surface is known all the same."""
 DETAIL_RINGS = 3
 """Rings of neighbours that detail is told from."""
 
@@ -69,7 +71,8 @@ def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
     if radius is not None:
         return fit
     fit = fit if mesh is None else _with_detail(cloud, mesh, fit)
-    fit.gaussian[(fit.spread * fit.radius**2 > UNDECIDED) | _too_curved(cloud, fit)] = np.nan
+    is_doubtful = (fit.spread * fit.radius**2 > UNDECIDED) | _too_curved(cloud, fit)
+    fit.gaussian[is_doubtful & (cloud.agreement < AGREED)] = np.nan
     return fit
 
 

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from rinow.curvature.cloud_facing import facing
+from rinow.curvature.cloud_stars import agreement, first_stars
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import cloud_layers, cloud_strays, clouds
 
@@ -39,6 +41,10 @@ LEAST_CLAIMS, MOST_LOST = 18, 0.5
 nothing around is known."""
 BETWEEN = 0.25
 """Share of its neighbours that gaps part from others from which on a point without such a gap is between two sheets."""
+
+TOLD = 0.75
+"""Share of the triangles of the stars around on which these agree, from which on points that face the same way are on
+one sheet: noise of a fifth of the spacing leaves as many."""
 
 
 class Near(NamedTuple):
@@ -80,9 +86,11 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     -----
     A quadric of least moduli, which a few strays do not bend, goes through the points around each one, without itself.
     A curved surface of few points leaves residuals too; their median, over the points around, raises the limit.  Where
-    one of the residuals is large, the sheet of the point is followed outwards, see `kernels.cloud_layers`; where no gap
-    parts it from other points the neighbours stay, unless gaps part many of these: then the point has the neighbours
-    that have it on their sheets, or is lost.  Nothing is examined where fewer than 36 points are looked at.
+    one of the residuals is large, the nearest points that face the same way are neighbours, see `cloud_facing`, if the
+    stars around agree.  Else, or if they agree more on it, the sheet of the point is followed outwards, see
+    `kernels.cloud_layers`; where no gap parts it from other points the neighbours stay, unless gaps part many of these:
+    then the point has the neighbours that have it on their sheets, or is lost.  Nothing is examined where fewer than 36
+    points are looked at.
     """
     near, n = nearest_points(points), len(points)
     around = max(n // PART, LEAST)
@@ -91,20 +99,37 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     close = near.distances[:, :N_NEAR].mean(axis=1)
     is_far = close > FAR * np.median(close[near.indices[:, :N_NEAR]], axis=1)
     normals, offsets, middles, largest = np.empty_like(points), np.empty(n), np.empty(n), np.empty(n)
-    clouds.plane_normals(points, near.indices, normals)
+    clouds.plane_normals(points, near.indices, NEAREST, normals)
     cloud_strays.offsets(points, normals, near.indices, near.distances[:, -1], N_BLOCKS, offsets, middles, largest)
     spacing = np.sqrt(np.pi / (NEAREST + 0.5)) * near.distances[:, -1]
     is_beside = offsets > np.maximum(DEVIATIONS * np.median(middles[near.indices], axis=1), SPACINGS * spacing)
     is_alone = np.count_nonzero(is_beside[near.indices[:, :N_NEAR]], axis=1) <= ALONE
     is_sparse = close > SPARSE * np.quantile(close[near.indices], 0.25, axis=1)
     farthest = np.maximum(offsets, largest) / spacing
-    is_unclear, is_lost = _follow_sheets(points, near, np.flatnonzero(farthest > SPACINGS), farthest > THICK)
+    owners = np.flatnonzero(farthest > SPACINGS)
+    near, is_unclear, is_lost = _own_sheets(points, near, owners, farthest > THICK)
     is_stray = is_far | (is_beside & (is_sparse | (is_alone & is_unclear)))
     return _first(near, around), is_stray, is_lost & ~is_stray
 
 
 def _first(near: Near, count: int) -> Near:
     return Near(near.distances[:, :count].copy(), near.indices[:, :count].copy())
+
+
+def _own_sheets(points: Floats, near: Near, owners: Indices, is_thick: Bools) -> tuple[Near, Bools, Bools]:
+    """Those of the nearest points that face the same way, or those on the sheet followed, where stars agree more."""
+    followed = Near(near.distances.copy(), near.indices.copy())
+    is_unclear, is_lost = _follow_sheets(points, followed, owners, is_thick)
+    if not len(owners):
+        return followed, is_unclear, is_lost
+    ahead, agreed = facing(points, near.indices)
+    is_told, share = agreed > 0.0, agreed[near.indices].mean(axis=1)
+    is_told &= share > TOLD
+    if not np.array_equal(near.indices, followed.indices):
+        others = agreement(first_stars(points, followed.indices)[1])
+        is_told &= share >= others[near.indices].mean(axis=1)
+    followed.distances[is_told], followed.indices[is_told] = near.distances[is_told], ahead[is_told]
+    return followed, is_unclear, is_lost & ~is_told
 
 
 def _follow_sheets(points: Floats, near: Near, owners: Indices, is_thick: Bools) -> tuple[Bools, Bools]:

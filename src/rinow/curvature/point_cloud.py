@@ -25,6 +25,8 @@ LEAST_POINTS = 24
 """Points below which nothing is known: a quadric and its error need eight around each, which should be a third."""
 SAME = 2.0**-46
 """Distance, over the extent, within which points differ by rounding only, as those of a pole do: they are one."""
+STRAY_ROUNDS = 3
+"""Times that strays are left out: many hide one another."""
 NOTE = (
     "The points have no orientation: the normals agree between neighbours and point away from the middle of each part, "
     "or upwards at its highest point."
@@ -134,16 +136,17 @@ def _of_distinct(points: Floats, radius: float | None) -> tuple[Estimate, NDArra
         return everywhere, status, 0
     order = morton_order(points).astype(np.intp)
     near, is_stray, is_lost = cleaned(points[order])
-    n_strays = int(np.count_nonzero(is_stray))
-    if n_strays:
+    for _ in range(STRAY_ROUNDS):
+        if not is_stray.any():
+            break
         order = order[~is_stray]
         if len(order) < LEAST_POINTS:
-            return everywhere, status, n_strays
-        near, _, is_lost = cleaned(points[order])
+            return everywhere, status, n - len(order)
+        near, is_stray, is_lost = cleaned(points[order])
     cloud = cloud_sheet(points[order], *near)
     found = cloud_estimate(cloud, radius)
     found.gaussian[is_lost] = np.nan
     everywhere.fill(order, found)
     status[order] = np.where(cloud.at_border, VertexStatus.BOUNDARY, VertexStatus.OK)
     status[order[~np.isfinite(found.gaussian)]] = VertexStatus.UNRESOLVED
-    return everywhere, status, n_strays
+    return everywhere, status, n - len(order)

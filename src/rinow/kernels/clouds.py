@@ -9,6 +9,8 @@ from rinow.kernels._jit import kernel, parallel_kernel, prange
 
 FLAT = 1e-12
 """Share of the largest variance that the second one must have for a plane to be determined."""
+ROW = 0.05
+"""Share up to which the points are one row, along which a surface turns as it will."""
 BOX = 4.0
 """Half side of the square that bounds a Voronoi cell, in distances of the farthest neighbour looked at."""
 LEVEL = 0.3
@@ -36,15 +38,20 @@ def covariance(v, near, points, out):
 
 
 @parallel_kernel
-def plane_normals(points, near, out):
+def plane_normals(points, near, few, out):
     """Write the unit normal of the plane of least squares through each point's neighbours; 0 if they lie on a line.
 
-    Nothing is said about its sign.
+    These are the first few of the row, or twice as many and so on as long as they are one row of points.  Nothing is
+    said about the sign.
     """
     for v in prange(points.shape[0]):
-        matrix = np.empty((3, 3))
-        covariance(v, near[v], points, matrix)
+        matrix, k = np.empty((3, 3)), min(few, near.shape[1])
+        covariance(v, near[v, :k], points, matrix)
         values, vectors = np.linalg.eigh(matrix)
+        while values[1] <= ROW * values[2] and k < near.shape[1]:
+            k = min(2 * k, near.shape[1])
+            covariance(v, near[v, :k], points, matrix)
+            values, vectors = np.linalg.eigh(matrix)
         determined = values[1] > FLAT * values[2]
         for a in range(3):
             out[v, a] = vectors[a, 0] if determined else 0.0
@@ -132,6 +139,36 @@ def stars(points, normals, tangents, skew, near, n_blocks, out, counts, gaps):
 
 
 @parallel_kernel
+def keep_ahead(normals, near, least, out):
+    """Write near[v, j], or v where the cosine of their normals is not above the least one."""
+    for v in prange(near.shape[0]):
+        for j in range(near.shape[1]):
+            w = near[v, j]
+            cosine = normals[v, 0] * normals[w, 0] + normals[v, 1] * normals[w, 1] + normals[v, 2] * normals[w, 2]
+            out[v, j] = w if cosine > least else v
+
+
+@kernel
+def is_side(star, count, p, q):
+    """Whether p and q are next to each other in a star."""
+    for j in range(count):
+        if star[j] == p:
+            return star[(j + 1) % count] == q or star[j - 1 if j > 0 else count - 1] == q
+    return False
+
+
+@parallel_kernel
+def agreement(star, counts, out):
+    """Write the share of the triangles of each star that are in the stars of all their corners; 0 for none."""
+    for v in prange(star.shape[0]):
+        agreed = 0
+        for j in range(counts[v]):
+            p, q = star[v, j], star[v, (j + 1) % counts[v]]
+            agreed += is_side(star[p], counts[p], v, q) and is_side(star[q], counts[q], v, p)
+        out[v] = agreed / max(counts[v], 1)
+
+
+@parallel_kernel
 def star_area_vectors(points, normals, star, counts, out):
     """Write the sum of the doubled area vectors of the triangles of each star that face the way of the normal."""
     for v in prange(points.shape[0]):
@@ -205,11 +242,19 @@ def take_triangles(triangles, sides, reverse, n_points, taken):
 
 
 @kernel
-def carry_signs(order, parents, normals, signs):
-    """Write the sign that each normal needs to agree with its parent's; 1 where the parent is no point."""
+def carry_signs(order, parents, points, normals, signs):
+    """Write the sign that each normal needs to be the mirror image of its parent's; 1 where the parent is no point.
+
+    The mirror lies between the two points.
+    """
     for v in order:
         p = parents[v]
         signs[v] = 1.0
         if p < signs.shape[0]:
-            cosine = normals[v, 0] * normals[p, 0] + normals[v, 1] * normals[p, 1] + normals[v, 2] * normals[p, 2]
-            signs[v] = signs[p] if cosine >= 0.0 else -signs[p]
+            cosine = square = here = there = 0.0
+            for a in range(3):
+                step = points[v, a] - points[p, a]
+                square += step * step
+                here, there = here + step * normals[v, a], there + step * normals[p, a]
+                cosine += normals[v, a] * normals[p, a]
+            signs[v] = signs[p] if cosine * square >= 2.0 * here * there else -signs[p]
