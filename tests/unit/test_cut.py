@@ -77,3 +77,14 @@ def test_no_curvature_at_a_boundary_exceeds_that_of_a_circle_through_an_edge(wid
     assert known.any()
     assert np.abs(curvature.k1[known]).max() * 0.5 <= 2.0
     assert np.abs(curvature.k2[known]).max() * 0.5 <= 2.0
+
+
+@pytest.mark.parametrize("quality", ["best", "fast"])
+def test_noisy_walls_have_the_mean_curvature_of_their_radius(quality):
+    # K is 0 over a plane in any ball, also in those of twice the radius, which miss a third of H.
+    part = parts.noisy(parts.cylinder(0.1, radius=0.5, height=2.0), 0.02)
+    z, r = part.vertices[:, 2], np.hypot(part.vertices[:, 0], part.vertices[:, 1])
+    wall = (np.abs(r - 0.5) < 0.02) & (np.abs(z - 1.0) < 0.8)
+    found = rinow.surface_curvature((part.vertices, part.faces), quality=quality)
+    # Noise of 0.002 over balls of one radius, of some hundred vertices: H to one or two parts in a hundred.
+    np.testing.assert_allclose(found.mean[wall], 1.0, atol=0.05)
