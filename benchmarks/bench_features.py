@@ -116,6 +116,8 @@ def around(points: Floats, normal: Floats) -> Floats:
 L_OUTLINE = [(0, 0), (1.6, 0), (1.6, 0.7), (0.7, 0.7), (0.7, 1.5), (0, 1.5)]
 T_OUTLINE = [(0.6, 0), (1.2, 0), (1.2, 1), (1.8, 1), (1.8, 1.6), (0, 1.6), (0, 1), (0.6, 1)]
 U_OUTLINE = [(0, 0), (2, 0), (2, 1.4), (1.4, 1.4), (1.4, 0.6), (0.6, 0.6), (0.6, 1.4), (0, 1.4)]
+THIN_OUTLINE = [(0, 0), (1.5, 0), (1.5, 1), (1.37, 1), (1.37, 0.13), (0.13, 0.13), (0.13, 1), (0, 1)]
+CHAMFERED = [(0.15, 0), (1.35, 0), (1.5, 0.15), (1.5, 0.85), (1.35, 1), (0.15, 1), (0, 0.85), (0, 0.15)]
 SHAFT = [(0, 0), (1, 0), (1, 0.8), (0.6, 0.8), (0.6, 2), (0, 2)]
 Kind = Callable[[Sampling], Part]
 KINDS: dict[str, Kind] = {
@@ -139,6 +141,13 @@ KINDS: dict[str, Kind] = {
     "shaft": lambda s: lathe(SHAFT, s),
     "plate with hole": lambda s: prism([polygon([(0, 0), (2, 0), (2, 2), (0, 2)]), hole(1, 1, 0.6)], 0.5, s),
     "nut": lambda s: prism([polygon(regular(6)), hole(0, 0, 0.5)], 0.7, s),
+    "ring": lambda s: lathe([(0.5, 0), (1, 0), (1, 0.4), (0.5, 0.4), (0.5, 0)], s),
+    "countersink": lambda s: lathe([(0.3, 0), (1, 0), (1, 0.5), (0.7, 0.5), (0.3, 0.25), (0.3, 0)], s),
+    "boss": lambda s: lathe([(0, 0), (1, 0), (1, 0.3), (0.4, 0.3), (0.4, 0.8), (0, 0.8)], s),
+    "thin plate": lambda s: prism([polygon([(0, 0), (2, 0), (2, 1.5), (0, 1.5)])], 0.12, s),
+    "thin U": lambda s: prism([polygon(THIN_OUTLINE)], 0.8, s),
+    "chamfered box": lambda s: prism([polygon(CHAMFERED)], 0.8, s),
+    "thin tube": lambda s: lathe([(0.6, 0), (0.7, 0), (0.7, 1.5), (0.6, 1.5), (0.6, 0)], s),
     "polyhedron": random_polyhedron,
 }
 COARSE_LIMIT = 9

@@ -24,6 +24,11 @@ MAX_FACES = 60
 """Faces a section runs through at most, coplanar ones included."""
 COPLANAR = 0.9999
 """Cosine of the angle up to which two faces of a section count as one piece."""
+PASS, END_STRAIGHT, END = 0, 1, 2
+"""What an edge does to sections: nothing, it ends those that were straight up to it, or all."""
+STRAIGHT_FACES, STRAIGHT_SHARE = 3, 0.25
+"""Faces of a section that can be called straight, two of them may be the facet of a round, and how far it may have
+turned before an edge, as a share of the turning there."""
 TINY = 1e-300
 """Smallest length that is divided by."""
 FLAT_DESIGN = 1e-3
@@ -161,29 +166,33 @@ def add_piece(s, length, n, sums):
 
 
 @kernel
-def follow_section(start, h, sign, reach, barrier, edge_of, vertices, faces, normals, partners, sums):
+def follow_section(start, h, sign, reach, ends, edge_of, vertices, faces, normals, partners, sums):
     """Add to `sums` the pieces of the section that leaves the half-edge h at `start` into its own face."""
     a, u = halfedge(h, vertices, faces)
     n = row(normals, h // 3)
     b = next_corner(h)
     p = along(a, start, minus(row(vertices, faces[b // 3, b % 3]), a))
     d = cross(n, u)
-    entry, done, begin, pieces = h, 0.0, 0.0, 1
-    for _ in range(MAX_FACES):
+    first, entry, done, begin, pieces = (sign * n[0], sign * n[1], sign * n[2]), h, 0.0, 0.0, 1
+    for passed in range(1, MAX_FACES + 1):
         out, way = exit_of(p, d, entry, n, vertices, faces)
         if out < 0 or done + way >= reach:
             done = reach if out >= 0 else done
             break
         p, done = along(p, way, d), done + way
         g = partners[out]
-        if g < 0 or barrier[edge_of[out]]:
+        if g < 0 or ends[edge_of[out]] == END:
             break
         m = row(normals, g // 3)
         if not dot(m, m) > 0.0:
             break
         d, agrees = across(d, out, g, n, m, vertices, faces)
         turned = sign if agrees else -sign
-        if sign * turned * dot(n, m) < COPLANAR:
+        cosine = sign * turned * dot(n, m)
+        if passed >= STRAIGHT_FACES and ends[edge_of[out]] == END_STRAIGHT:
+            if 1.0 - sign * dot(first, n) < STRAIGHT_SHARE**2 * (1.0 - cosine):
+                break
+        if cosine < COPLANAR:
             add_piece(0.5 * (begin + done), done - begin, (sign * n[0], sign * n[1], sign * n[2]), sums)
             begin, pieces = done, pieces + 1
             if pieces > MAX_PIECES:
@@ -206,11 +215,11 @@ def line_at_edge(sums):
 
 
 @kernel
-def side_normal(h, sign, reach, barrier, edge_of, vertices, faces, normals, partners, sums):
+def side_normal(h, sign, reach, ends, edge_of, vertices, faces, normals, partners, sums):
     """Normal beside the half-edge h as its own side sees it, and the squared deviation from the line."""
     sums[:] = 0.0
     for start in STARTS:
-        follow_section(start, h, sign, reach, barrier, edge_of, vertices, faces, normals, partners, sums)
+        follow_section(start, h, sign, reach, ends, edge_of, vertices, faces, normals, partners, sums)
     if not sums[0] > 0.0:
         n = row(normals, h // 3)
         return (sign * n[0], sign * n[1], sign * n[2]), 0.0
@@ -244,7 +253,7 @@ def noise_error(noise, mine, theirs):
 
 @parallel_kernel
 def edge_jumps(
-    edges, vertices, faces, flip, normals, partners, edge_halfedges, edge_of, barrier, noise, n_blocks, jumps, errors
+    edges, vertices, faces, flip, normals, partners, edge_halfedges, edge_of, ends, noise, n_blocks, jumps, errors
 ):
     """Write to jumps[e] the turning at each listed edge that neither side explains, to errors[e] its standard error.
 
@@ -260,8 +269,8 @@ def edge_jumps(
             _, w = halfedge(g, vertices, faces)
             other = -1.0 if dot(u, w) > 0.0 else 1.0
             mine, theirs = reach_of(h, vertices, faces), reach_of(g, vertices, faces)
-            n, x = side_normal(h, 1.0, mine, barrier, edge_of, vertices, faces, normals, partners, sums)
-            m, y = side_normal(g, other, theirs, barrier, edge_of, vertices, faces, normals, partners, sums)
+            n, x = side_normal(h, 1.0, mine, ends, edge_of, vertices, faces, normals, partners, sums)
+            m, y = side_normal(g, other, theirs, ends, edge_of, vertices, faces, normals, partners, sums)
             angle = turn(n, m, u)
             jumps[e] = -angle if flip[h // 3] else angle
             errors[e] = math.sqrt(x + y + noise_error(noise[e], mine, theirs) ** 2)
