@@ -22,13 +22,13 @@ from scipy.spatial import HalfspaceIntersection, QhullError
 
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE / "curvature"), str(HERE.parent / "tests")]
-import parts
-import shapes
 from _mesh import jittered_torus
 from _parts import Floats, Part, Piece, Sampling, lathe, polyhedron, prism
 from surfaces import has, surfaces, triangulation
 
+import parts
 import rinow
+import shapes
 
 SPACINGS = (0.2, 0.12, 0.07, np.inf)
 NOISE = (0.0, 0.005, 0.01, 0.02)
@@ -88,7 +88,7 @@ def random_polyhedron(sampling: Sampling) -> Part:
         d = rng.uniform(0.9, 1.1, len(N))
         try:
             V = HalfspaceIntersection(np.column_stack([N, -d]), np.zeros(3)).intersections
-        except QhullError:
+        except QhullError:  # unbounded
             continue
         if np.abs(V).max() > 3.0:
             continue

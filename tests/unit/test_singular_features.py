@@ -53,6 +53,23 @@ def test_corners_and_cone_points_are_found_and_nothing_else(name, h, noise):
     np.testing.assert_allclose(found.cone_angles, expected, atol=0.15 + 10 * noise, rtol=0.1)
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.01, 0.02])
+def test_sides_of_three_edges_are_told_from_a_round(noise):
+    # Sections of three edges reach over the next crease, which turns by 30° only.
+    part = parts.noisy(parts.regular_prism(12, 0.2), noise)
+    found = features_of(part)
+    assert share(found.crease_edges, part.creases) == (1.0, 1.0)
+    assert set(found.corners) == set(part.corners) == set(found.cone_points)
+
+
+@pytest.mark.parametrize("seed", [3, 5, 8])
+def test_thin_plates_have_no_creases_across_their_edges(seed):
+    part = parts.noisy(parts.box(0.2, size=(2.0, 1.5, 0.12)), 0.02, seed=seed)
+    found = features_of(part)
+    assert min(share(found.crease_edges, part.creases)) >= 0.99
+    assert set(found.corners) == set(part.corners) == set(found.cone_points)
+
+
 @pytest.mark.parametrize("seed", [3, 5, 8])
 def test_precision_and_recall_over_all_solids(seed):
     found = true = common = 0
