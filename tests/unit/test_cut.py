@@ -108,7 +108,7 @@ def strips(n, rings):
 
 def test_chamfers_of_holes_are_cut_off():
     # The chamfer turns by 40°, as a facet of a coarse round may; but it is narrower than the plane beside it.
-    V, F = turned([(0.4, 0), (1, 0), (1, 0.5), (0.55, 0.5), (0.4, 0.5 - 0.15 * np.tan(np.radians(40)))])
+    V, F = turned([(0.4, 0), (1, 0), (1, 0.5), (0.48, 0.5), (0.4, 0.5 - 0.08 * np.tan(np.radians(40)))])
     mesh = rinow.TriangleMesh(V, F)
     assert crease_barriers(mesh).sum() == 5 * 36
     np.testing.assert_array_equal(rinow.surface_curvature(mesh).gaussian, 0.0)
