@@ -207,6 +207,22 @@ def test_damaged_meshes_do_not_crash():
     assert len(rinow.singular_features((bow.vertices, bow.faces)).crease_edges) == 0
 
 
+@pytest.mark.parametrize("share_of_faces", [0.05, 1.0])
+def test_repeated_faces_change_nothing(share_of_faces):
+    part = parts.noisy(parts.l_shape(0.25), 0.01)
+    found = features_of(part)
+    more = part.faces[: int(share_of_faces * len(part.faces)), [1, 2, 0]]
+    other = rinow.singular_features((part.vertices, np.concatenate([part.faces, more])))
+    np.testing.assert_array_equal(other.crease_edges, found.crease_edges)
+    np.testing.assert_array_equal(other.crease_angles, found.crease_angles)
+    np.testing.assert_array_equal(other.corners, found.corners)
+    np.testing.assert_array_equal(other.cone_points, found.cone_points)
+    assert f"{len(more)} faces have the same vertices as another one, and were left out." in other.notes
+    lengths = [rinow.TriangleMesh(part.vertices, F).intrinsic() for F in (part.faces, np.concatenate([part.faces, more]))]
+    one, two = (rinow.singular_features(mesh).cone_angles for mesh in lengths)
+    np.testing.assert_array_equal(two, one)
+
+
 def test_open_crease_ends_at_the_boundary():
     x, y = (g.ravel() for g in np.meshgrid(np.arange(11.0), np.arange(9.0), indexing="ij"))
     V = np.stack([x, y, np.abs(x - 5.0)], axis=1)  # a valley along x = 5
