@@ -6,6 +6,7 @@ import pytest
 import parts
 import rinow
 import shapes
+from rinow.curvature.barriers import crease_barriers
 from rinow.curvature.cut import cut_along_creases
 
 
@@ -77,3 +78,53 @@ def test_no_curvature_at_a_boundary_exceeds_that_of_a_circle_through_an_edge(wid
     assert known.any()
     assert np.abs(curvature.k1[known]).max() * 0.5 <= 2.0
     assert np.abs(curvature.k2[known]).max() * 0.5 <= 2.0
+
+
+@pytest.mark.parametrize("quality", ["best", "fast"])
+def test_noisy_walls_have_the_mean_curvature_of_their_radius(quality):
+    # K is 0 over a plane in any ball, also in those of twice the radius, which miss a third of H.
+    part = parts.noisy(parts.cylinder(0.1, radius=0.5, height=2.0), 0.02)
+    z, r = part.vertices[:, 2], np.hypot(part.vertices[:, 0], part.vertices[:, 1])
+    wall = (np.abs(r - 0.5) < 0.02) & (np.abs(z - 1.0) < 0.8)
+    found = rinow.surface_curvature((part.vertices, part.faces), quality=quality)
+    # Noise of 0.002 over balls of one radius, of some hundred vertices: H to one or two parts in a hundred.
+    np.testing.assert_allclose(found.mean[wall], 1.0, atol=0.05)
+
+
+def turned(profile, n=36):
+    """A ring whose section is a polygon of (radius, height), of long triangles between its corners."""
+    t = 2 * np.pi * np.arange(n) / n
+    V = np.concatenate([np.stack([r * np.cos(t), r * np.sin(t), np.full(n, z)], axis=1) for r, z in profile])
+    return V, strips(n, len(profile))
+
+
+def strips(n, rings):
+    """Triangles between closed rings of n vertices, the last ring joined to the first."""
+    a, k = np.arange(n), np.arange(rings)[:, None]
+    b, p, q = (a + 1) % n, n * k, n * ((k + 1) % rings)
+    quads = ((p + a, p + b, q + b), (p + a, q + b, q + a))
+    return np.concatenate([np.stack(c, axis=-1).reshape(-1, 3) for c in quads])
+
+
+def test_chamfers_of_holes_are_cut_off():
+    # The chamfer turns by 40°, as a facet of a coarse round may; but it is narrower than the plane beside it.
+    V, F = turned([(0.4, 0), (1, 0), (1, 0.5), (0.48, 0.5), (0.4, 0.5 - 0.08 * np.tan(np.radians(40)))])
+    mesh = rinow.TriangleMesh(V, F)
+    assert crease_barriers(mesh).sum() == 5 * 36
+    np.testing.assert_array_equal(rinow.surface_curvature(mesh).gaussian, 0.0)
+
+
+def test_corners_with_many_edges_are_no_spikes():
+    # A quarter of a disk: both lids are fans about the corner, so that every edge is one of its ring.
+    s = np.linspace(0, np.pi / 2, 25)
+    P = np.concatenate([[(0.0, 0.0)], np.stack([np.cos(s), np.sin(s)], axis=1)])
+    n, f = len(P), np.arange(1, len(P) - 1)
+    V = np.concatenate([np.c_[P, np.zeros(n)], np.c_[P, np.full(n, 0.3)]])
+    z = np.zeros_like(f)
+    F = np.concatenate([strips(n, 2)[: n], strips(n, 2)[2 * n : 3 * n], np.c_[z + n, f + n, f + n + 1], np.c_[z, f + 1, f]])
+    mesh = rinow.TriangleMesh(V, F)
+    assert crease_barriers(mesh).sum() == 2 * n + 3
+    curvature = rinow.surface_curvature(mesh)
+    np.testing.assert_array_equal(curvature.gaussian, 0.0)
+    # The two vertices of the wall that have one of its triangles show nothing of it.
+    assert np.sum(np.abs(curvature.mean[2 : n - 1] - 0.5) < 1e-9) == n - 3

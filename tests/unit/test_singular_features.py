@@ -53,6 +53,23 @@ def test_corners_and_cone_points_are_found_and_nothing_else(name, h, noise):
     np.testing.assert_allclose(found.cone_angles, expected, atol=0.15 + 10 * noise, rtol=0.1)
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.01, 0.02])
+def test_sides_of_three_edges_are_told_from_a_round(noise):
+    # Sections of three edges reach over the next crease, which turns by 30° only.
+    part = parts.noisy(parts.regular_prism(12, 0.2), noise)
+    found = features_of(part)
+    assert share(found.crease_edges, part.creases) == (1.0, 1.0)
+    assert set(found.corners) == set(part.corners) == set(found.cone_points)
+
+
+@pytest.mark.parametrize("seed", [3, 5, 8])
+def test_thin_plates_have_no_creases_across_their_edges(seed):
+    part = parts.noisy(parts.box(0.2, size=(2.0, 1.5, 0.12)), 0.02, seed=seed)
+    found = features_of(part)
+    assert min(share(found.crease_edges, part.creases)) >= 0.99
+    assert set(found.corners) == set(part.corners) == set(found.cone_points)
+
+
 @pytest.mark.parametrize("seed", [3, 5, 8])
 def test_precision_and_recall_over_all_solids(seed):
     found = true = common = 0
@@ -202,6 +219,22 @@ def test_damaged_meshes_do_not_crash():
     assert len(rinow.singular_features(([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])).crease_edges) == 0
     bow = shapes.bow_tie()
     assert len(rinow.singular_features((bow.vertices, bow.faces)).crease_edges) == 0
+
+
+@pytest.mark.parametrize("share_of_faces", [0.05, 1.0])
+def test_repeated_faces_change_nothing(share_of_faces):
+    part = parts.noisy(parts.l_shape(0.25), 0.01)
+    found = features_of(part)
+    more = part.faces[: int(share_of_faces * len(part.faces)), [1, 2, 0]]
+    other = rinow.singular_features((part.vertices, np.concatenate([part.faces, more])))
+    np.testing.assert_array_equal(other.crease_edges, found.crease_edges)
+    np.testing.assert_array_equal(other.crease_angles, found.crease_angles)
+    np.testing.assert_array_equal(other.corners, found.corners)
+    np.testing.assert_array_equal(other.cone_points, found.cone_points)
+    assert f"{len(more)} faces have the same vertices as another one, and were left out." in other.notes
+    lengths = [rinow.TriangleMesh(part.vertices, F).intrinsic() for F in (part.faces, np.concatenate([part.faces, more]))]
+    one, two = (rinow.singular_features(mesh).cone_angles for mesh in lengths)
+    np.testing.assert_array_equal(two, one)
 
 
 def test_open_crease_ends_at_the_boundary():

@@ -24,6 +24,8 @@ CERTAIN = ((10, 8.0), (8, 16.0))
 """Edges of a certain line, and its median jump over the standard error: shorter ones must be clearer."""
 ROUND = np.radians(44.0)
 """Jump up to which lines that only bound single strips of faces may be those of a coarse round."""
+ALIKE = 3.0
+"""Ratio of the widths of two strips up to which they may be of the same round: a chamfer is narrower than its plane."""
 
 
 def crease_barriers(mesh: TriangleMesh) -> Bools:
@@ -54,9 +56,10 @@ def crease_barriers(mesh: TriangleMesh) -> Bools:
 
 def _certain_lines(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:
     edges, kept = mesh.topology.edges, lines.is_crease
-    told = kept & ~_bounds_strips(mesh, turnings, lines) & ~np.all(_around_spikes(mesh)[edges], axis=1)
     labels = crease_lines.line_components(kept, edges, mesh.n_vertices)
-    sizes = np.bincount(labels[kept], minlength=mesh.n_vertices)
+    apart = kept & ~np.all(_around_spikes(mesh, kept)[edges], axis=1)
+    sizes = np.bincount(labels[apart], minlength=mesh.n_vertices)
+    told = apart & ~_bounds_strips(mesh, turnings, lines)
     certain = np.zeros(mesh.n_vertices, np.bool_)
     for least, ratio in CERTAIN:
         clear = told & (np.abs(lines.angles) >= ratio * lines.errors)
@@ -64,19 +67,26 @@ def _certain_lines(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLine
     return kept & certain[labels]
 
 
-def _around_spikes(mesh: TriangleMesh) -> Bools:
-    """(n_vertices,): single vertices beside the surface, and their neighbours."""
+def _around_spikes(mesh: TriangleMesh, kept: Bools) -> Bools:
+    """(n_vertices,): single vertices beside the surface, and their neighbours.
+
+    At these most edges turn, at corners of parts, which may have many edges, only those of three creases.
+    """
     sheet, index = patch_sheet(mesh)
-    is_spike = np.zeros(mesh.n_vertices, np.bool_)
-    is_spike[index[spikes(sheet)[0]]] = True
-    return rings_around(mesh.topology, is_spike, 1)
+    alone = index[spikes(sheet)[0]]
+    t, is_spike = mesh.topology, np.zeros(mesh.n_vertices, np.bool_)
+    turning = np.bincount(t.edges[kept].ravel(), minlength=mesh.n_vertices)
+    is_spike[alone] = 2 * turning[alone] > np.diff(t.neighbour_offsets)[alone]
+    return rings_around(t, is_spike, 1)
 
 
 def _bounds_strips(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:
-    """(n_edges,): both faces of a flat crease have all their vertices on creases."""
+    """(n_edges,): both faces of a flat crease have all their vertices on creases and are about as wide."""
     on_crease = np.zeros(mesh.n_vertices, np.bool_)
     on_crease[mesh.topology.edges[lines.is_crease]] = True
     is_strip: Bools = np.all(on_crease[mesh.faces], axis=1, keepdims=False)
     h = turnings.halfedges
     other = mesh.topology.partners[h]
-    return (np.abs(lines.angles) < ROUND) & is_strip[h // 3] & (other >= 0) & is_strip[other // 3]
+    mine, theirs = mesh.face_areas[h // 3], mesh.face_areas[other // 3]  # on the same edge, as their widths
+    alike = np.maximum(mine, theirs) < ALIKE * np.minimum(mine, theirs)
+    return (np.abs(lines.angles) < ROUND) & is_strip[h // 3] & (other >= 0) & is_strip[other // 3] & alike

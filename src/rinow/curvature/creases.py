@@ -112,7 +112,7 @@ class EdgeTurnings:
         )
         return read_only(errors)
 
-    def jumps(self, candidates: Indices, barrier: Bools) -> tuple[Floats, Floats]:
+    def jumps(self, candidates: Indices, ends: NDArray[np.int8]) -> tuple[Floats, Floats]:
         """(n_edges,) each: the turning that neither side explains, 0 off the candidates, and its standard error."""
         mesh, jumps, errors = self.mesh, np.zeros(len(self.halfedges)), np.zeros(len(self.halfedges))
         creases.edge_jumps(
@@ -124,7 +124,7 @@ class EdgeTurnings:
             mesh.topology.partners,
             self.halfedges,
             self.edge_of_halfedge,
-            barrier,
+            ends,
             self.height_noise,
             N_BLOCKS,
             jumps,
@@ -171,19 +171,28 @@ def crease_lines_of(turnings: EdgeTurnings) -> CreaseLines:
     least = np.maximum(WEAK_ANGLE, WEAK_NOISE * turnings.least_errors) / MOST_JUMP
     flat = (turnings.least_errors < EXACT_NOISE) & (np.abs(theta) > EXACT_ANGLE / MOST_JUMP)
     candidates = np.flatnonzero((np.abs(theta) >= least) | flat)
-    barrier = np.abs(theta) > np.maximum(BARRIER_ANGLE, BARRIER_NOISE * turnings.noise)
-    jumps = errors = np.zeros_like(theta)
+    ends = _ends_of_sections(theta, turnings.noise)
+    is_crease, jumps, errors = np.zeros(len(theta), np.bool_), theta, theta
     for _ in range(2):
-        jumps, errors = turnings.jumps(candidates, barrier)
+        jumps, errors = turnings.jumps(candidates, ends)
         strong, weak = _evidence(theta, jumps, errors)
-        barrier = _linked(turnings, strong, weak, np.abs(jumps), errors)
+        is_crease = _linked(turnings, strong, weak, np.abs(jumps), errors)
+        ends = np.where(is_crease, creases.END, np.minimum(ends, creases.END_STRAIGHT)).astype(np.int8)
     degrees, turns = np.empty(mesh.n_vertices, np.intp), np.empty(mesh.n_vertices)
     t = mesh.topology
     crease_lines.junctions(
-        barrier, t.edges, turnings.edge_of_halfedge, t.corner_offsets, t.vertex_corners, mesh.vertices, degrees, turns
+        is_crease, t.edges, turnings.edge_of_halfedge, t.corner_offsets, t.vertex_corners, mesh.vertices, degrees, turns
     )
-    angles = np.where(barrier, jumps, 0.0)
-    return CreaseLines(barrier, angles, errors, _exponents(theta, jumps), degrees, turns)
+    angles = np.where(is_crease, jumps, 0.0)
+    return CreaseLines(is_crease, angles, errors, _exponents(theta, jumps), degrees, turns)
+
+
+def _ends_of_sections(theta: Floats, noise: Floats) -> NDArray[np.int8]:
+    """What each edge does to sections before anything is known of creases."""
+    turning = np.abs(theta)
+    clear = turning > BARRIER_NOISE * noise
+    ends = np.where(clear & (turning > STRONG_ANGLE), creases.END_STRAIGHT, creases.PASS)
+    return np.where(clear & (turning > BARRIER_ANGLE), creases.END, ends).astype(np.int8)
 
 
 def _exponents(theta: Floats, jumps: Floats) -> Floats:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rinow import tolerances
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
-__all__ = ["crease_notes", "left_out_notes", "mesh_notes", "weld_notes"]
+__all__ = ["crease_notes", "left_out_notes", "mesh_notes", "repeat_notes", "weld_notes"]
 
 
 def weld_notes(before: int, after: int) -> tuple[str, ...]:
@@ -19,6 +19,13 @@ def weld_notes(before: int, after: int) -> tuple[str, ...]:
         f"The faces share no edge: vertices closer than {tolerances.WELD_DISTANCE:g} of the diagonal were taken as one "
         f"for the computation, {after} points for {before} vertices.",
     )
+
+
+def repeat_notes(n_repeated: int) -> tuple[str, ...]:
+    """What was done about faces that are listed more than once."""
+    if not n_repeated:
+        return ()
+    return (f"{n_repeated} faces have the same vertices as another one, and were left out.",)
 
 
 def crease_notes(on_crease: NDArray[np.bool_]) -> tuple[str, ...]:

@@ -61,7 +61,7 @@ class Fitting:
         rows = c.rows[part.start : part.stop + 1] - c.rows[part.start]
         own = patch_driver.Centres(
             c.vertices[part], c.frames[part], c.low[part], c.high[part], c.factors[part], c.orders[part], rows,
-            c.noise[part],
+            c.noise[part], c.curvedness[part],
         )  # fmt: skip
         patch_driver.treat_all(
             self.task, self.errors_of, self.reaches, self.most, N_BLOCKS, own, self.sheet, tables, frames, out

@@ -12,7 +12,7 @@ from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
-from rinow.kernels.patch_fits import GAUSSIAN, MEAN
+from rinow.kernels.patch_fits import BOTH, GAUSSIAN, MEAN
 
 __all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "levelled", "sample", "scales", "select", "windows"]
 
@@ -60,10 +60,11 @@ class Ladder(NamedTuple):
 
     def fitting(
         self, task: int, sheet: balls.Sheet, centres: Ints, frames: Floats, low: Ints, high: Ints, orders: Ints,
-        rows: NDArray[np.int64], noise: Floats, errors_of: int = GAUSSIAN,
+        rows: NDArray[np.int64], noise: Floats, errors_of: int = GAUSSIAN, bent: Floats | None = None,
     ) -> Fitting:  # fmt: skip
-        """Fits about some vertices to the balls of the given indices."""
-        own = patch_driver.Centres(centres, frames, low, high, self.factors[centres], orders, rows, noise)
+        """Fits about some vertices to the balls of the given indices; `bent` are frames that tell the curvedness."""
+        curvedness = np.sqrt(0.5) * np.linalg.norm((frames if bent is None else bent)[:, 9:], axis=1)
+        own = patch_driver.Centres(centres, frames, low, high, self.factors[centres], orders, rows, noise, curvedness)
         return Fitting(task, errors_of, self.reaches, self.most, sheet, own)
 
     def frames(self, sheet: balls.Sheet, centres: Ints, frames: Floats, choice: Choice, tasks: Tasks) -> Floats:
@@ -86,8 +87,8 @@ class Samples(NamedTuple):
     """What the sample tells.
 
     For each vertex the samples near it (compressed rows); for each sample the vertices it speaks for (compressed rows),
-    its logarithmic risks of H over the plane, and of K over the torus and over its plane, for each radius and order,
-    its choice, noise and spacing.
+    its logarithmic risks of H over the plane, of K over the torus, and of both over its plane, for each radius and
+    order, its choice, noise and spacing.
     """
 
     starts: Ints
@@ -117,10 +118,9 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), choice, tasks)
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
-    n_radii, level = len(ladder.reaches), frames.copy()
+    n_radii = len(ladder.reaches)
     torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, n_radii, GAUSSIAN, links, tasks)
-    level[:, 9:] = 0.0
-    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, n_radii, GAUSSIAN, links, tasks)
+    level_logs, over_plane, _ = _examine(sheet, ladder, centres, frames, n_radii, BOTH, links, tasks)
     choice = levelled(frames, choice, over_plane)
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
@@ -141,12 +141,20 @@ def _examine(
     links: tuple[Ints, Ints],
     tasks: Tasks,
 ) -> tuple[Floats, Choice, Floats]:
-    """Logarithmic risks (m, n_radii, 7), choices and noise of samples, whose noise is not known beforehand."""
-    m = len(centres)
+    """Logarithmic risks (m, n_radii, 7), choices and noise of samples, whose noise is not known beforehand.
+
+    Those of K are over the tori of the frames, others over their planes.  Both together are asked for there: where a
+    surface is developable, as a cylinder is, K is 0 over a plane in the largest ball, however wrong H is.
+    """
+    m, over = len(centres), frames.copy()
+    if errors_of != GAUSSIAN:
+        over[:, 9:] = 0.0
     low, high = np.zeros(m, np.int32), np.full(m, n_radii - 1, np.int32)
     order = np.full(m, PILOT_ORDER if errors_of == MEAN else MAX_ORDER, np.int32)
     rows, spacing = np.arange(m + 1) * n_radii, sheet.spacing[centres]
-    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, errors_of)
+    fitting = ladder.fitting(
+        patch_driver.TABLES, sheet, centres, over, low, high, order, rows, spacing**2, errors_of, frames
+    )
     tables = fill_tables(fitting, False, tasks, 0.05)
     residuals = np.empty((m, n_radii * N_ORDERS))
     risks.median_rows(tables.noise.reshape(residuals.shape) * spacing[:, None] ** 2, links[1], links[0], residuals)

@@ -16,14 +16,20 @@ STARTS = (0.5, 0.22, 0.81)
 """Where sections leave an edge; no simple fractions, so that they meet few vertices of regular meshes."""
 REACH = 3.0
 """Length of a section, in heights of the first face or half edges, whichever is longer."""
-SECTION_GAIN = 4.2
-"""Standard deviation of the normal that a section finds at the edge, for heights of deviation 1 over its length."""
+MEAN_GAIN, LINE_GAIN = 1.2, 4.2
+"""Standard deviation of the normal that a section finds at the edge, as the mean of its faces or by a line through
+them, for heights of deviation 1 over its length."""
 MAX_PIECES = 7
 """Faces with normals of their own that a section looks at: those are enough for a line."""
 MAX_FACES = 60
 """Faces a section runs through at most, coplanar ones included."""
 COPLANAR = 0.9999
 """Cosine of the angle up to which two faces of a section count as one piece."""
+PASS, END_STRAIGHT, END = 0, 1, 2
+"""What an edge does to sections: nothing, it ends those that were straight up to it, or all."""
+STRAIGHT_FACES, STRAIGHT_SHARE = 3, 0.25
+"""Faces of a section that can be called straight, two of them may be the facet of a round, and how far it may have
+turned before an edge, as a share of the turning there."""
 TINY = 1e-300
 """Smallest length that is divided by."""
 FLAT_DESIGN = 1e-3
@@ -161,29 +167,33 @@ def add_piece(s, length, n, sums):
 
 
 @kernel
-def follow_section(start, h, sign, reach, barrier, edge_of, vertices, faces, normals, partners, sums):
+def follow_section(start, h, sign, reach, ends, edge_of, vertices, faces, normals, partners, sums):
     """Add to `sums` the pieces of the section that leaves the half-edge h at `start` into its own face."""
     a, u = halfedge(h, vertices, faces)
     n = row(normals, h // 3)
     b = next_corner(h)
     p = along(a, start, minus(row(vertices, faces[b // 3, b % 3]), a))
     d = cross(n, u)
-    entry, done, begin, pieces = h, 0.0, 0.0, 1
-    for _ in range(MAX_FACES):
+    first, entry, done, begin, pieces = (sign * n[0], sign * n[1], sign * n[2]), h, 0.0, 0.0, 1
+    for passed in range(1, MAX_FACES + 1):
         out, way = exit_of(p, d, entry, n, vertices, faces)
         if out < 0 or done + way >= reach:
             done = reach if out >= 0 else done
             break
         p, done = along(p, way, d), done + way
         g = partners[out]
-        if g < 0 or barrier[edge_of[out]]:
+        if g < 0 or ends[edge_of[out]] == END:
             break
         m = row(normals, g // 3)
         if not dot(m, m) > 0.0:
             break
         d, agrees = across(d, out, g, n, m, vertices, faces)
         turned = sign if agrees else -sign
-        if sign * turned * dot(n, m) < COPLANAR:
+        cosine = sign * turned * dot(n, m)
+        if passed >= STRAIGHT_FACES and ends[edge_of[out]] == END_STRAIGHT:
+            if 1.0 - sign * dot(first, n) < STRAIGHT_SHARE**2 * (1.0 - cosine):
+                break
+        if cosine < COPLANAR:
             add_piece(0.5 * (begin + done), done - begin, (sign * n[0], sign * n[1], sign * n[2]), sums)
             begin, pieces = done, pieces + 1
             if pieces > MAX_PIECES:
@@ -194,27 +204,34 @@ def follow_section(start, h, sign, reach, barrier, edge_of, vertices, faces, nor
 
 @kernel
 def line_at_edge(sums):
-    """The normal at distance 0 by the line through the pieces, and the squared deviation of the pieces from it."""
+    """The normal at distance 0 by the line through the pieces, the squared deviation from it, and its gain of noise.
+
+    One facet has no slope: its normal is taken as it is.
+    """
     s0, s1, s2 = sums[0], sums[1], sums[2]
     t0, t1 = (sums[3], sums[4], sums[5]), (sums[6], sums[7], sums[8])
     det = s0 * s2 - s1 * s1
     if not det > FLAT_DESIGN * s0 * s2:
-        return unit(t0), max(1.0 - dot(t0, t0) / (s0 * s0), 0.0)
+        return unit(t0), max(1.0 - dot(t0, t0) / (s0 * s0), 0.0), MEAN_GAIN
     a = ((s2 * t0[0] - s1 * t1[0]) / det, (s2 * t0[1] - s1 * t1[1]) / det, (s2 * t0[2] - s1 * t1[2]) / det)
     b = ((s0 * t1[0] - s1 * t0[0]) / det, (s0 * t1[1] - s1 * t0[1]) / det, (s0 * t1[2] - s1 * t0[2]) / det)
-    return unit(a), max(1.0 - (dot(a, t0) + dot(b, t1)) / s0, 0.0)
+    return unit(a), max(1.0 - (dot(a, t0) + dot(b, t1)) / s0, 0.0), LINE_GAIN
 
 
 @kernel
-def side_normal(h, sign, reach, barrier, edge_of, vertices, faces, normals, partners, sums):
-    """Normal beside the half-edge h as its own side sees it, and the squared deviation from the line."""
+def side_normal(h, sign, reach, ends, edge_of, vertices, faces, normals, partners, sums):
+    """Normal beside the half-edge h as its own side sees it, squared deviation from the line, and gain of noise.
+
+    Sections that end at a crease are short, and their normals worse.
+    """
     sums[:] = 0.0
     for start in STARTS:
-        follow_section(start, h, sign, reach, barrier, edge_of, vertices, faces, normals, partners, sums)
+        follow_section(start, h, sign, reach, ends, edge_of, vertices, faces, normals, partners, sums)
     if not sums[0] > 0.0:
         n = row(normals, h // 3)
-        return (sign * n[0], sign * n[1], sign * n[2]), 0.0
-    return line_at_edge(sums)
+        return (sign * n[0], sign * n[1], sign * n[2]), 0.0, LINE_GAIN / reach
+    normal, deviation, gain = line_at_edge(sums)
+    return normal, deviation, gain * len(STARTS) / sums[0]
 
 
 @kernel
@@ -226,25 +243,19 @@ def reach_of(h, vertices, faces):
 
 @parallel_kernel
 def least_errors(vertices, faces, partners, edge_halfedges, noise, out):
-    """Write the part of the standard error of a jump at each edge that the noise (n_edges,) of heights makes."""
+    """Write what the noise (n_edges,) of heights adds to the standard error of jumps, for sections of full length."""
     for e in prange(edge_halfedges.shape[0]):
         h = edge_halfedges[e]
         g = partners[h]
         out[e] = np.inf
         if g >= 0:
-            out[e] = noise_error(noise[e], reach_of(h, vertices, faces), reach_of(g, vertices, faces))
-
-
-@kernel
-def noise_error(noise, mine, theirs):
-    """Standard error of a jump between sections of two lengths by the noise of heights."""
-    scale = SECTION_GAIN * noise
-    return math.sqrt((scale / mine) ** 2 + (scale / theirs) ** 2)
+            mine, theirs = reach_of(h, vertices, faces), reach_of(g, vertices, faces)
+            out[e] = LINE_GAIN * noise[e] * math.sqrt(1.0 / mine**2 + 1.0 / theirs**2)
 
 
 @parallel_kernel
 def edge_jumps(
-    edges, vertices, faces, flip, normals, partners, edge_halfedges, edge_of, barrier, noise, n_blocks, jumps, errors
+    edges, vertices, faces, flip, normals, partners, edge_halfedges, edge_of, ends, noise, n_blocks, jumps, errors
 ):
     """Write to jumps[e] the turning at each listed edge that neither side explains, to errors[e] its standard error.
 
@@ -260,8 +271,8 @@ def edge_jumps(
             _, w = halfedge(g, vertices, faces)
             other = -1.0 if dot(u, w) > 0.0 else 1.0
             mine, theirs = reach_of(h, vertices, faces), reach_of(g, vertices, faces)
-            n, x = side_normal(h, 1.0, mine, barrier, edge_of, vertices, faces, normals, partners, sums)
-            m, y = side_normal(g, other, theirs, barrier, edge_of, vertices, faces, normals, partners, sums)
+            n, x, p = side_normal(h, 1.0, mine, ends, edge_of, vertices, faces, normals, partners, sums)
+            m, y, q = side_normal(g, other, theirs, ends, edge_of, vertices, faces, normals, partners, sums)
             angle = turn(n, m, u)
             jumps[e] = -angle if flip[h // 3] else angle
-            errors[e] = math.sqrt(x + y + noise_error(noise[e], mine, theirs) ** 2)
+            errors[e] = math.sqrt(x + y + noise[e] ** 2 * (p * p + q * q))

@@ -18,7 +18,7 @@ class Centres(NamedTuple):
     """Vertices (n,) about which balls grow, and what is to be fitted there.
 
     For each the frame (11,) of its torus, the first and last index of its radii, the factor of these radii, the highest
-    order, the first row of its results (n + 1,), and the variance of the noise.
+    order, the first row of its results (n + 1,), the variance of the noise, and the curvedness of the surface.
     """
 
     vertices: np.ndarray
@@ -29,6 +29,7 @@ class Centres(NamedTuple):
     orders: np.ndarray
     rows: np.ndarray
     noise: np.ndarray
+    curvedness: np.ndarray
 
 
 class Patches(NamedTuple):
@@ -68,7 +69,7 @@ def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work
     asked = nested_fits.highest_order(size, asked)
     if task == TABLES:
         k1, k2, s2 = frame[9] * spacing, frame[10] * spacing, centres.noise[i] / (spacing * spacing)
-        share = patch_fits.shares(errors_of, k1, k2)
+        share = patch_fits.shares(errors_of, centres.curvedness[i] * spacing)
         patch_fits.write_rows(start, ball.points, size, own, asked, share, k1, k2, s2, fit, tables, values, gradients)
     elif asked >= 2:
         nested_fits.place_origin(ball.points, size, own[0], fit)

@@ -14,7 +14,7 @@ N_BIASES = N_ORDERS - 2
 """Orders whose bias is seen by comparison with the order two above."""
 GAUSSIAN, MEAN, BOTH = 0, 1, 2
 """Whose errors the tables hold: of K, of H, or the root of the squares of those of K and of H times the curvedness of
-the torus.  Both together are less often small by chance than either, and K alone tells no error of a minimal surface
+the surface.  Both together are less often small by chance than either, and K alone tells no error of a minimal surface
 that bends it alike in all directions."""
 STEEP = 0.3
 """Largest squared slope of a fit over its torus: a steeper one has a curvature, and an error, near 0 by its volume."""
@@ -77,11 +77,11 @@ def write_no_row(t, tables):
 
 
 @inner
-def shares(errors_of, k1, k2):
+def shares(errors_of, curvedness):
     """Factors of K and of H in the errors asked for."""
     if errors_of == MEAN:
         return 0.0, 1.0
-    return 1.0, (math.sqrt(0.5 * (k1 * k1 + k2 * k2)) if errors_of == BOTH else 0.0)
+    return 1.0, curvedness if errors_of == BOTH else 0.0
 
 
 @inner
