@@ -9,7 +9,7 @@ import shapes
 from naive import jets as naive_jets
 from naive import tori as naive_tori
 from rinow import TriangleMesh
-from rinow.curvature.centres import cover, flat_frames, members_of_discs, sizes_of_discs
+from rinow.curvature.centres import cover, flat_frames, members_of_discs, sizes_of_discs, turns
 from rinow.curvature.sheet import patch_sheet
 from rinow.kernels import balls, bends, nested_fits, patches
 from rinow.kernels.osculating_torus import arc_place, offset_forms, torus_coordinates, torus_frame
@@ -235,7 +235,7 @@ def test_a_ball_does_not_enter_another_sheet():
 
 @pytest.mark.parametrize("radius", [0.9, 3.0])
 def test_centres_cover_the_sheet_and_are_in_no_disc_of_each_other(radius):
-    centres = cover(SHEET, np.full(len(INDEX), radius))
+    centres = cover(SHEET, turns(SHEET), np.full(len(INDEX), radius))
     everything = np.arange(len(INDEX), dtype=np.int32)
     starts, members = members_of_discs(SHEET, everything, centres, np.full(len(centres), radius))
     assert len(np.unique(members)) == len(INDEX)
@@ -259,6 +259,6 @@ def test_the_choice_of_centres_knows_no_motion_no_scale_and_no_numbering():
     V = np.empty_like(TORUS.vertices)
     V[new] = 37.0 * TORUS.vertices @ Q.T + 1.0
     sheet, index = patch_sheet(TriangleMesh(V, new[TORUS.faces]))
-    centres = INDEX[cover(SHEET, np.full(len(INDEX), 2.0))]
-    moved = index[cover(sheet, np.full(len(index), 2.0))]
+    centres = INDEX[cover(SHEET, turns(SHEET), np.full(len(INDEX), 2.0))]
+    moved = index[cover(sheet, turns(sheet), np.full(len(index), 2.0))]
     assert set(new[centres].tolist()) == set(moved.tolist())

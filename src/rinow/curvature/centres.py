@@ -9,7 +9,7 @@ from rinow.curvature.sheet import sorted_by
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers
 
-__all__ = ["CORE", "cover", "flat_frames", "members_of_discs", "sizes_of_discs"]
+__all__ = ["CORE", "cover", "flat_frames", "members_of_discs", "sizes_of_discs", "turns"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -18,26 +18,34 @@ CORE = 1.4
 """Radius of the part of a patch that is used, over the radius within which the centre is the only one."""
 
 
-def cover(sheet: balls.Sheet, radii: Floats) -> Ints:
+def turns(sheet: balls.Sheet) -> Ints:
+    """All vertices in the order in which they may become centres.
+
+    Notes
+    -----
+    It is that of a hash of the shapes of their stars, so the choice is that of a random order: a change of the mesh
+    changes the choice near it only, and neither a motion nor another numbering changes it, except among stars of equal
+    shape, which come in the order of their numbers in the sheet.
+    """
+    keys = np.empty(len(sheet.vertices), np.uint32)
+    covers.shape_keys(sheet.vertices, sheet.offsets, sheet.neighbours, keys)
+    return sorted_by(keys)
+
+
+def cover(sheet: balls.Sheet, candidates: Ints, radii: Floats) -> Ints:
     """Vertices within whose radii all vertices lie, ascending.
 
     Parameters
     ----------
     sheet : Sheet
         The surface.
+    candidates : (n,) ndarray of int
+        All vertices; each becomes a centre if it lies in the disc of no earlier one.
     radii : (n,) ndarray of float
         Radius a vertex covers, in spacings.
-
-    Notes
-    -----
-    The vertices are taken in the order of a hash of the shapes of their stars, so the choice is that of a random order:
-    a change of the mesh changes the choice near it only, and neither a motion nor another numbering changes it, except
-    among stars of equal shape, which come in the order of their numbers in the sheet.
     """
-    keys = np.empty(len(radii), np.uint32)
-    covers.shape_keys(sheet.vertices, sheet.offsets, sheet.neighbours, keys)
     centres = np.empty(len(radii), np.int32)
-    count = covers.cover(sorted_by(keys), radii * sheet.spacing, sheet, centres)
+    count = covers.cover(candidates, radii * sheet.spacing, sheet, centres)
     return np.sort(centres[:count])
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow.curvature.centres import cover, flat_frames, members_of_discs
+from rinow.curvature.centres import cover, flat_frames, members_of_discs, turns
 from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
@@ -26,8 +26,9 @@ SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
 """Radius a sample covers, in spacings, for surfaces up to so many vertices: with and without refinement."""
 RESOLVED = 0.1
 """Curvature, over the inverse spacing, up to which a mesh resolves its surface: large balls miss nothing there."""
-LEVEL = 2.0
-"""Factor by which the risk over a plane must be less than that over the torus for the plane to be taken."""
+LEVEL, LARGER = 2.0, 4
+"""Factor by which the risk over a plane must be less than that over the torus for the plane to be taken, and by how
+many radii more it is looked for."""
 ROUNDING = 1e-15
 """Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
@@ -86,11 +87,12 @@ class Choice(NamedTuple):
 class Samples(NamedTuple):
     """What the sample tells.
 
-    For each vertex the samples near it (compressed rows); for each sample the vertices it speaks for (compressed rows),
-    its logarithmic risks of H over the plane, of K over the torus, and of both over its plane, for each radius and
-    order, its choice, noise and spacing.
+    The vertices in the order in which they become centres; for each vertex the samples near it (compressed rows); for
+    each sample the vertices it speaks for (compressed rows), its logarithmic risks of H over the plane, of K over the
+    torus, and of both over its plane, for each radius and order, its choice, noise and spacing.
     """
 
+    turns: Ints
     starts: Ints
     near: Ints
     member_starts: Ints
@@ -110,17 +112,20 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     n = len(sheet.vertices)
     rows = np.searchsorted([size for size, _, _ in SAMPLE_SPACINGS], n if sizes is None else sizes)
     reach = np.array([fine if is_refined else coarse for _, fine, coarse in SAMPLE_SPACINGS])[rows]
-    centres = cover(sheet, np.broadcast_to(reach, n))
+    order = turns(sheet)
+    centres = cover(sheet, order, np.broadcast_to(reach, n))
     m, radius = len(centres), np.broadcast_to(reach, n)[centres]
     links = members_of_discs(sheet, centres, centres, AROUND * radius)
-    n_plane = min(PILOT_RADII, len(ladder.reaches))
-    plane_logs, choice, _ = _examine(sheet, ladder, centres, flat_frames(sheet, centres), n_plane, MEAN, links, tasks)
+    n_radii = len(ladder.reaches)
+    last = np.full(m, n_radii - 1, np.int32)
+    pilot = np.minimum(last, PILOT_RADII - 1)
+    plane_logs, choice, _ = _examine(sheet, ladder, centres, flat_frames(sheet, centres), pilot, MEAN, links, tasks)
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), choice, tasks)
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
-    n_radii = len(ladder.reaches)
-    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, n_radii, GAUSSIAN, links, tasks)
-    level_logs, over_plane, _ = _examine(sheet, ladder, centres, frames, n_radii, BOTH, links, tasks)
+    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, last, GAUSSIAN, links, tasks)
+    last = np.minimum(choice.radius + LARGER, n_radii - 1)
+    level_logs, over_plane, _ = _examine(sheet, ladder, centres, frames, last, BOTH, links, tasks)
     choice = levelled(frames, choice, over_plane)
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
@@ -128,7 +133,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
     logs = plane_logs, torus_logs, level_logs
-    return Samples(starts, near, member_starts, members, *logs, choice, noise, sheet.spacing[centres])
+    return Samples(order, starts, near, member_starts, members, *logs, choice, noise, sheet.spacing[centres])
 
 
 def _examine(
@@ -136,20 +141,20 @@ def _examine(
     ladder: Ladder,
     centres: Ints,
     frames: Floats,
-    n_radii: int,
+    high: Ints,
     errors_of: int,
     links: tuple[Ints, Ints],
     tasks: Tasks,
 ) -> tuple[Floats, Choice, Floats]:
     """Logarithmic risks (m, n_radii, 7), choices and noise of samples, whose noise is not known beforehand.
 
-    Those of K are over the tori of the frames, others over their planes.  Both together are asked for there: where a
-    surface is developable, as a cylinder is, K is 0 over a plane in the largest ball, however wrong H is.
+    Each is examined up to the radius of index `high`.  Risks of K are over the tori of the frames, others over their
+    planes.  Both together are asked for there: where a surface is developable, as a cylinder is, K is 0 over a plane in
+    the largest ball, however wrong H is.
     """
-    m, over = len(centres), frames.copy()
+    m, n_radii, low, over = len(centres), len(ladder.reaches), np.zeros(len(centres), np.int32), frames.copy()
     if errors_of != GAUSSIAN:
         over[:, 9:] = 0.0
-    low, high = np.zeros(m, np.int32), np.full(m, n_radii - 1, np.int32)
     order = np.full(m, PILOT_ORDER if errors_of == MEAN else MAX_ORDER, np.int32)
     rows, spacing = np.arange(m + 1) * n_radii, sheet.spacing[centres]
     fitting = ladder.fitting(

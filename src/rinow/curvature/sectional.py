@@ -176,7 +176,7 @@ def blended_patches(
     between = scales(samples, sheet, at_edge)
     low, high, top, noise = windows(samples, between)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
-    centres = cover(sheet, core)
+    centres = cover(sheet, samples.turns, core)
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
     logs = samples.plane_logs, samples.torus_logs, samples.level_logs
     plane, choice, over_plane = (chosen_at(centres, samples, between, x) for x in logs)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.stencils import local_spacing, stencil_surface
-from rinow.kernels import balls, stencils
+from rinow.kernels import balls, patch_order, stencils
 from rinow.mesh import TriangleMesh
 
 __all__ = ["morton_order", "patch_sheet", "sorted_by"]
@@ -43,7 +43,11 @@ def patch_sheet(mesh: TriangleMesh, left_out: NDArray[np.bool_] | None = None) -
 
 def morton_order(points: NDArray[np.float64]) -> NDArray[np.int32]:
     """An order of points that keeps near ones together."""
-    return sorted_by(_morton_codes(points))
+    low = points.min(axis=0, initial=np.inf)
+    size = max(float((points - low).max(initial=0.0)), np.finfo(float).tiny)
+    codes = np.empty(len(points), np.uint32)
+    patch_order.morton_codes(points, low, size, codes)
+    return sorted_by(codes)
 
 
 def sorted_by(keys: NDArray[np.uint32]) -> NDArray[np.int32]:
@@ -64,17 +68,3 @@ def _rows(
     rows = np.empty(new_offsets[-1], np.int32)
     stencils.renumbered_rows(offsets, neighbours, index, rank, new_offsets, rows)
     return new_offsets, rows
-
-
-def _morton_codes(points: NDArray[np.float64]) -> NDArray[np.uint32]:
-    """Codes of the cells of a grid of 1024³ along a curve through neighbouring cells."""
-    low = points.min(axis=0, initial=np.inf)
-    size = max(float((points - low).max(initial=0.0)), np.finfo(float).tiny)
-    cells = np.minimum((points - low) / size * 1024, 1023).astype(np.uint32)
-    codes = np.zeros(len(points), np.uint32)
-    for axis in range(3):
-        x = cells[:, axis]
-        for shift, mask in ((16, 0x030000FF), (8, 0x0300F00F), (4, 0x030C30C3), (2, 0x09249249)):
-            x = (x | (x << np.uint32(shift))) & np.uint32(mask)
-        codes |= x << np.uint32(axis)
-    return codes

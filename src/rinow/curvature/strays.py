@@ -17,7 +17,6 @@ from rinow.mesh import TriangleMesh
 __all__ = ["spikes", "stray_vertices"]
 
 Bools = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 ALONE = 4.0
@@ -71,8 +70,10 @@ def spikes(sheet: balls.Sheet) -> tuple[Indices, Indices]:
     ring much more than its other members from theirs.
     """
     none = np.empty(0, np.intp)
-    height = _heights_over_rings(sheet)
-    around = (_ring_sums(height**2, sheet) - height**2) / np.maximum(np.diff(sheet.offsets), 1)
+    height, sums = np.empty((2, len(sheet.spacing)))
+    stencils.heights_over_rings(sheet.vertices, sheet.normals, sheet.offsets, sheet.neighbours, height)
+    stencils.ring_sums(height**2, sheet.offsets, sheet.neighbours, sums)
+    around = (sums - height**2) / np.maximum(np.diff(sheet.offsets), 1)
     likely = np.flatnonzero((np.abs(height) > 0.5 * SPACINGS * sheet.spacing) & (height**2 > ALONE * around))
     if not len(likely) or len(height) <= NEAREST:
         return none, none
@@ -85,21 +86,6 @@ def spikes(sheet: balls.Sheet) -> tuple[Indices, Indices]:
     found = offsets > np.maximum(DEVIATIONS * middles, SPACINGS * sheet.spacing[likely])
     is_spike = np.isin(near[found], likely[found])
     return likely[found], near[found, np.argmin(is_spike, axis=1)]
-
-
-def _heights_over_rings(sheet: balls.Sheet) -> Floats:
-    """(n_vertices,): height of each vertex over the mean of its neighbours."""
-    count = np.maximum(np.diff(sheet.offsets), 1)
-    height = np.zeros(len(sheet.spacing))
-    for x, n in zip(sheet.vertices.T, sheet.normals.T, strict=True):
-        height += n * (x - (_ring_sums(np.ascontiguousarray(x), sheet) - x) / count)
-    return height
-
-
-def _ring_sums(values: Floats, sheet: balls.Sheet) -> Floats:
-    sums = np.empty_like(values)
-    stencils.ring_sums(values, sheet.offsets, sheet.neighbours, sums)
-    return sums
 
 
 def _fin_tips(mesh: TriangleMesh) -> Bools:

@@ -207,11 +207,23 @@ def _root(parent, v):
     return v
 
 
+@inner
+def all_agree(faces, partners):
+    """Whether the half-edges of each edge with two faces run against each other."""
+    for h in range(partners.shape[0]):
+        g = partners[h]
+        if g >= 0 and faces[h // 3, h % 3] == faces[g // 3, g % 3]:
+            return False
+    return True
+
+
 @kernel
 def face_orientations(faces, face_used, partners):
     """Which faces to turn so that neighbours agree (the minority in each patch), and whether all then agree."""
     n_faces = faces.shape[0]
     flip = np.zeros(n_faces, np.bool_)
+    if all_agree(faces, partners):
+        return flip, True
     seen = np.zeros(n_faces, np.bool_)
     queue = np.empty(n_faces, np.intp)
     consistent = True

@@ -71,6 +71,8 @@ def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work
         k1, k2, s2 = frame[9] * spacing, frame[10] * spacing, centres.noise[i] / (spacing * spacing)
         share = patch_fits.shares(errors_of, centres.curvedness[i] * spacing)
         patch_fits.write_rows(start, ball.points, size, own, asked, share, k1, k2, s2, fit, tables, values, gradients)
+        for t in range(start + len(own), stop):
+            patch_fits.write_no_row(t, tables)
     elif asked >= 2:
         nested_fits.place_origin(ball.points, size, own[0], fit)
         nested_fits.add_moments(ball.points, size, own, asked, fit)

@@ -1,8 +1,28 @@
-"""An order of the vertices in which neighbours lie close together in memory."""
+"""Orders of the vertices in which neighbours lie close together in memory."""
 
 import numpy as np
 
-from rinow.kernels._jit import kernel
+from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
+
+
+@inner
+def spread_bits(x):
+    """The ten bits of a number with two zeros before each."""
+    x = (x | x << 16) & 0x030000FF
+    x = (x | x << 8) & 0x0300F00F
+    x = (x | x << 4) & 0x030C30C3
+    return (x | x << 2) & 0x09249249
+
+
+@parallel_kernel
+def morton_codes(points, low, size, codes):
+    """Write the place of each point's cell, of a grid of 1024³, on a curve through neighbouring cells."""
+    for i in prange(len(points)):
+        code = 0
+        for axis in range(3):
+            cell = min(int((points[i, axis] - low[axis]) / size * 1024), 1023)
+            code |= spread_bits(cell) << axis
+        codes[i] = code
 
 
 @kernel

@@ -98,6 +98,20 @@ def ring_sums(values, offsets, neighbours, out):
 
 
 @parallel_kernel
+def heights_over_rings(vertices, normals, offsets, neighbours, out):
+    """Write the height of each vertex over the mean of its neighbours."""
+    for v in prange(offsets.shape[0] - 1):
+        count = max(offsets[v + 1] - offsets[v], 1)
+        height = 0.0
+        for axis in range(3):
+            total = vertices[v, axis]
+            for i in range(offsets[v], offsets[v + 1]):
+                total += vertices[neighbours[i], axis]
+            height += normals[v, axis] * (vertices[v, axis] - (total - vertices[v, axis]) / count)
+        out[v] = height
+
+
+@parallel_kernel
 def mean_edge_lengths(vertices, offsets, neighbours, out):
     """Write the mean distance from each vertex to its neighbours; 0 without any."""
     for v in prange(offsets.shape[0] - 1):
