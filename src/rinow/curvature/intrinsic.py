@@ -14,7 +14,7 @@ from rinow.curvature.arcs import without_chords
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.length_noise import LengthNoise
-from rinow.curvature.powers import LADDER, ORDER, REFERENCE, Powers, combination
+from rinow.curvature.waves import LADDER, ORDER, REFERENCE, Waves, window
 from rinow.curvature.unseen import unseen_error
 from rinow.kernels import patch_order
 from rinow.kernels.risks import CLEAR
@@ -131,8 +131,8 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
     flow = CurvatureFlow(mesh)
     noise = LengthNoise.of(flow)
     start, shares = without_chords(flow, noise)
-    powers = Powers(flow, start)
-    tau2 = noise.level(flow, powers)
+    waves = Waves(flow, start)
+    tau2 = noise.level(flow, waves)
     n = mesh.n_vertices
     bias, unseen, radii = np.zeros((3, n))
     best = IntrinsicCurvature(np.full(n, np.nan), np.full(n, np.inf), bias, unseen, radii, shares)
@@ -141,11 +141,10 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
     for m in LADDER[: bisect_right(LADDER, most_steps)]:
         here = None if wanted is None else wanted == m
         if here is None or here.any():
-            improved = [_improve(best, candidate, here) for candidate in _candidates(m, flow, noise, powers, tau2)]
+            improved = [_improve(best, candidate, here) for candidate in _candidates(m, flow, noise, waves, tau2)]
             idle = 0 if any(improved) else idle + 1
         if idle == IDLE and here is None:
             break
-        powers.forget(m + 1)
     best.gaussian[_is_flat(flow) & np.isfinite(best.gaussian)] = 0.0
     _shrink(best, flow)
     scale = best.radius**2 / SUPPORT
@@ -178,24 +177,27 @@ def _shrink(best: IntrinsicCurvature, flow: CurvatureFlow) -> None:
         best.gaussian[:] *= np.where(total > 0.0, np.clip((1.0 - error / total) / (1.0 - CLEAR), 0.0, 1.0), 1.0)
 
 
-def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats) -> Iterator[Candidate]:
-    """The estimates of one scale, for all orders, one after the other to keep few of them in memory."""
+def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, waves: Waves, tau2: Floats) -> Iterator[Candidate]:
+    """The estimates of one scale, for all orders."""
     radius = np.sqrt(np.fmax(SUPPORT * m * noise.step, flow.spacing**2))
-    for order in range(1, ORDER + 1 if m else 2):
-        taken = combination(m, order) if m else {0: 1.0}
-        values = powers.combined(taken) if m else np.where(flow.has_data, powers[0], np.nan)
-        variance = _product(tau2, noise.variance(taken))
+    orders = range(1, ORDER + 1 if m else 2)
+    windows = [window(m, order) for order in orders]
+    differences = [_difference(_reference(m, order), c) for order, c in zip(orders, windows, strict=True)] if m else []
+    sums = waves.sums(windows + differences)
+    for i, c in enumerate(windows):
+        values = sums[i] if m else np.where(flow.has_data, sums[i], np.nan)
+        variance = _product(tau2, noise.variance(c))
         variance[~np.isfinite(values)] = np.nan
         variance = np.fmax(variance, flow.means(variance, VARIANCE_PASSES))
-        bias = _squared_bias(m, order, flow, noise, powers, tau2) if m else np.zeros(len(radius))
+        bias = np.zeros(len(radius))
+        if m:
+            bias = _squared_bias(m, sums[len(windows) + i], flow, _product(tau2, noise.variance(differences[i])))
         yield values, variance, bias, radius
 
 
-def _squared_bias(m: int, order: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats) -> Floats:
+def _squared_bias(m: int, difference: Floats, flow: CurvatureFlow, seen: Floats) -> Floats:
     """What a candidate differs by from its reference, squared, less the noise of that."""
-    difference = _difference(_reference(m, order), combination(m, order))
-    seen = _product(tau2, noise.variance(difference))
-    excess = powers.combined(difference) ** 2 - seen
+    excess = difference**2 - seen
     seen = np.fmax(seen, flow.means(seen, VARIANCE_PASSES))
     return np.fmax(flow.means(excess, max(PASSES, m)), FLOOR * seen)
 
@@ -206,15 +208,16 @@ def _product(noise: Floats, variance: Floats) -> Floats:
         return noise * variance
 
 
-def _reference(m: int, order: int) -> dict[int, float]:
-    """What the candidate of m steps and this order is compared with: half the steps, an order more if there is one."""
+def _reference(m: int, order: int) -> Floats:
+    """What the candidate of this scale and order is compared with: half the scale, an order more if there is one."""
     half = REFERENCE[m]
-    return combination(half, order + 1 if half == m else min(order + 1, ORDER))
+    return window(half, order + 1 if half == m else min(order + 1, ORDER))
 
 
-def _difference(a: dict[int, float], b: dict[int, float]) -> dict[int, float]:
+def _difference(a: Floats, b: Floats) -> Floats:
     """Coefficients of a minus those of b."""
-    return {k: a.get(k, 0.0) - b.get(k, 0.0) for k in {*a, *b}}
+    n = max(len(a), len(b))
+    return np.pad(a, (0, n - len(a))) - np.pad(b, (0, n - len(b)))
 
 
 def _improve(best: IntrinsicCurvature, candidate: Candidate, where: NDArray[np.bool_] | None) -> bool:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.flow import CurvatureFlow
-from rinow.curvature.powers import Powers, combination
+from rinow.curvature.waves import Waves, passed, window
 from rinow.kernels import smoothing
 
 __all__ = ["LengthNoise"]
@@ -21,6 +20,8 @@ GAUSSIAN = 3.0 / (16.0 * np.pi)
 
 NOISE_PROBES = ((2, 2), (4, 2), (8, 2), (8, 3))
 """Steps and order of the fits whose residuals tell the noise; the smallest residual counts."""
+TIMES, STARTS = np.geomspace(1e-5, 1e4, 500), np.geomspace(1e-2, 1e2, 25)
+"""Squared frequencies times σ² that the noise is integrated over, and s0² over σ² that this is done for."""
 LEVEL_PASSES = 10
 """Repetitions of the mean over a ring that average squared residuals."""
 
@@ -61,23 +62,19 @@ class LengthNoise:
         start[~(flow.has_data & np.isfinite(start))] = 0.0
         return cls(np.ascontiguousarray(density), start, np.ascontiguousarray(step), squares)
 
-    def variance(self, combination: Mapping[int, float]) -> Floats:
-        """(n_vertices,): variance of the sum of coefficient times S^m K over the items m: coefficient."""
-        items = list(combination.items())
-        total = np.zeros(len(self.start))
-        for i, (m, a) in enumerate(items):
-            for k, b in items[: i + 1]:
-                scale = 0.5 * (m + k) * self.step + self.start
-                with np.errstate(all="ignore"):
-                    total += (1.0 if k == m else 2.0) * a * b / (scale * scale * scale)
-        return GAUSSIAN * self.density * total
+    def variance(self, coefficients: Floats) -> Floats:
+        """(n_vertices,): variance of the sum of coefficient times wave."""
+        squares = passed(coefficients, np.exp(-0.5 * TIMES)) ** 2 * TIMES**3
+        integrals = 0.5 * np.exp(-np.multiply.outer(STARTS, TIMES)) @ squares * np.log(TIMES[1] / TIMES[0])
+        with np.errstate(all="ignore"):
+            at_start = np.interp(np.log(self.start / self.step), np.log(STARTS), np.log(integrals))
+            return GAUSSIAN * self.density * np.exp(at_start) / self.step**3
 
-    def level(self, flow: CurvatureFlow, powers: Powers) -> Floats:
+    def level(self, flow: CurvatureFlow, waves: Waves) -> Floats:
         """(n_vertices,): variance of the edge lengths that the residuals of smooth fits show around each vertex."""
         least = np.full(len(flow.areas), np.nan)
-        for m, order in NOISE_PROBES:
-            residuals = flow.areas * (powers[0] - powers.combined(combination(m, order)))
+        for fit in waves.sums([window(*probe) for probe in NOISE_PROBES]):
             with np.errstate(all="ignore"):
-                squares = np.where(flow.has_data, residuals**2 / self.sensitivity, np.nan)
+                squares = np.where(flow.has_data, (flow.areas * (waves.start - fit)) ** 2 / self.sensitivity, np.nan)
             np.fmin(least, flow.means(squares, LEVEL_PASSES), out=least)
         return least
