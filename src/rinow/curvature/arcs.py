@@ -23,7 +23,7 @@ REACH = 4.0
 EVIDENCE = 2.0
 """Corrections count from where they halve the noise: five numbers fitted to fifty vertices take away up to that much by
 chance."""
-SMOOTH = (4, 3)
+SMOOTH = (2, 3)
 """Scale and order of the mean that shows how the curvature varies over the star of a vertex."""
 
 

@@ -14,8 +14,8 @@ from rinow.curvature.arcs import without_chords
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.length_noise import LengthNoise
-from rinow.curvature.waves import LADDER, ORDER, REFERENCE, Waves, window
 from rinow.curvature.unseen import unseen_error
+from rinow.curvature.waves import LADDER, ORDER, REFERENCE, Waves, window
 from rinow.kernels import patch_order
 from rinow.kernels.risks import CLEAR
 from rinow.mesh import IntrinsicMesh, TriangleMesh
@@ -24,8 +24,8 @@ __all__ = ["IntrinsicCurvature", "intrinsic", "intrinsic_curvature"]
 
 Floats = NDArray[np.float64]
 
-PASSES, SHRINK_PASSES = 10, 40
-"""Repetitions of the mean over a ring that average squared errors."""
+PASSES, SHRINK_PASSES = (5, 16), 12
+"""Repetitions of the mean over a ring that average squared errors: least and most, a third of the scale between."""
 VARIANCE_PASSES = 3
 """The same for the mean that a variance is raised to."""
 CALIBRATION = 1.5
@@ -86,7 +86,7 @@ def intrinsic_curvature(
     radius : float, optional
         Radius of the balls in units of length, or the nearest to it that competes; by default the best of all.
     most_steps : int, optional
-        Largest scale that competes, in steps of the flow.
+        Largest scale that competes, in units of that of one step.
 
     Returns
     -------
@@ -199,7 +199,7 @@ def _squared_bias(m: int, difference: Floats, flow: CurvatureFlow, seen: Floats)
     """What a candidate differs by from its reference, squared, less the noise of that."""
     excess = difference**2 - seen
     seen = np.fmax(seen, flow.means(seen, VARIANCE_PASSES))
-    return np.fmax(flow.means(excess, max(PASSES, m)), FLOOR * seen)
+    return np.fmax(flow.means(excess, int(np.clip(m // 3, *PASSES))), FLOOR * seen)
 
 
 def _product(noise: Floats, variance: Floats) -> Floats:
@@ -250,15 +250,15 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
     Notes
     -----
     By Gauss and Bonnet every metric curvature at a scale is a weighted mean of angle defects.  Here the weights are
-    the powers of one small operator S, a regression over 2.1 spacings in the developed metric that
+    polynomials in one small operator S, a regression over 2.1 spacings in the developed metric that
 
     - keeps constants, and linear functions away from the boundary: it adds no error of first order,
     - keeps the total curvature, so that its weights vary smoothly from defect to defect and the noise of each
       length, which enters four defects with the sum 0, cancels.
 
-    :math:`S^m` then averages like the heat flow at the time :math:`m\sigma^2/2`.  With K the defects over areas the
-    candidates are :math:`K_{m,r} = (I - (I - S^m)^r) K`, with the errors :math:`(I - S^m)^r K`, of order 2r in scale,
-    for r = 1, 2, 3 and m = 0, 1, 2, 3, 4, 6, ... 128.  At each vertex the one with the least sum of variance and
+    The candidates :math:`K_{m,r}` are averages of the defects over areas with weights that end at a distance, of
+    order 2r in it, for r = 1, 2, 3, and with as much noise as the mean :math:`(I - (I - S^m)^r) K` by heat flow for
+    m = 0, 1, 2, 3, 4, 6, ... 128: see `rinow.curvature.waves`.  At each vertex the one with the least sum of variance and
     squared bias is taken.  The variance is that of `LengthNoise`, its level from the residuals of small fits.  The
     squared bias of :math:`K_{m,r}` is the mean over a neighbourhood of :math:`(K_{m/2,r+1} - K_{m,r})^2`,
     less the variance of this difference.  At the end the values are multiplied by

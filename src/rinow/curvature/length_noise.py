@@ -1,4 +1,4 @@
-"""How errors of edge lengths, independent of each other, reach the averages of angle defects."""
+"""How errors of edge lengths, independent of each other, reach averages of angle defects."""
 
 from __future__ import annotations
 
@@ -19,23 +19,24 @@ GAUSSIAN = 3.0 / (16.0 * np.pi)
 """Integral of the squared second derivative across any line of a Gaussian density of variance 1 in the plane."""
 
 NOISE_PROBES = ((2, 2), (4, 2), (8, 2), (8, 3))
-"""Steps and order of the fits whose residuals tell the noise; the smallest residual counts."""
+"""Scale and order of the fits whose residuals tell the noise; the smallest residual counts."""
 TIMES, STARTS = np.geomspace(1e-5, 1e4, 500), np.geomspace(1e-2, 1e2, 25)
 """Squared frequencies times σ² that the noise is integrated over, and s0² over σ² that this is done for."""
-LEVEL_PASSES = 10
+LEVEL_PASSES = 6
 """Repetitions of the mean over a ring that average squared residuals."""
 
 
 @dataclass(frozen=True)
 class LengthNoise:
-    r"""Variances of combinations of powers S^m K for edge lengths of standard deviation 1.
+    r"""Variances of windows of waves for edge lengths of standard deviation 1.
 
-    The weights c of the defects in S^m K are nearly those of a Gaussian of variance :math:`s^2 = m\sigma^2` along each
-    axis.  An error of a length changes the sum of defects by the jump of the slope of c across that edge, which is the
-    second derivative of c times half the heights over the edge, whence the variance
+    The weights c of the defects in :math:`S^m K` are nearly those of a Gaussian of variance :math:`s^2 = m\sigma^2`
+    along each axis.  An error of a length changes the sum of defects by the jump of the slope of c across that edge,
+    which is the second derivative of c times half the heights over the edge, whence the variance
     :math:`\rho \, 3 / (16\pi s^6)` with the sum ρ of the squares of half heights per area.  A variance
     :math:`s_0^2` is added to :math:`s^2` that makes it right for m = 0 as well, where the sum of squared derivatives of
-    the defect is known.
+    the defect is known.  A window that passes the share q of the frequency k has, likewise,
+    :math:`\rho \, 3 / (16\pi) \int q^2 e^{-s_0^2 k^2} k^5 dk`.
 
     Attributes
     ----------

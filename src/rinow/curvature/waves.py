@@ -15,7 +15,7 @@ __all__ = ["LADDER", "ORDER", "REFERENCE", "Waves", "passed", "window"]
 Floats = NDArray[np.float64]
 
 LADDER = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128)
-"""Scales m that compete: each averages noise as the steps S^m do, or those of the same order."""
+"""Scales m that compete: each leaves as much noise as m steps S do, with an order as much as 1 - (1 - S^m)^order."""
 REFERENCE = {1: 1, 2: 1, 3: 2} | {m: LADDER[LADDER.index(m) - 2] for m in LADDER[4:]}
 """The smaller scale that the bias is seen against: half of m."""
 ORDER = 3
