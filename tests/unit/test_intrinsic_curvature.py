@@ -14,7 +14,7 @@ from rinow.curvature.angle_defect import longest_edges
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.intrinsic import CALIBRATION, intrinsic_curvature
 from rinow.curvature.length_noise import LengthNoise
-from rinow.curvature.powers import combination
+from rinow.curvature.waves import LADDER, LEAST, REACH, Waves, passed, window
 from rinow.kernels import smoothing
 
 TORUS = shapes.noisy(shapes.irregular_torus(1500), 0.05)
@@ -104,11 +104,44 @@ def test_one_step_is_a_regression_over_an_unrolled_neighbourhood(make, reach):
         np.testing.assert_allclose(values[row], [expected[w] for w in columns[row]], atol=1e-10)
 
 
-def test_orders_reproduce_what_their_polynomials_say():
-    for m, order in ((3, 1), (2, 2), (4, 3)):
-        S = np.array([0.9, 0.5, -0.1])
-        value = sum(c * S**k for k, c in combination(m, order).items())
-        np.testing.assert_allclose(value, 1 - (1 - S**m) ** order, atol=1e-15)
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_windows_keep_polynomials_of_their_order(order):
+    for m in LADDER[2:]:
+        c, j = window(m, order), np.arange(len(window(m, order)))
+        assert len(c) == np.ceil(REACH[order - 1] * np.sqrt(m))
+        moments = [np.sum(c * j ** (2.0 * i)) / np.sum(np.abs(c) * j ** (2.0 * i)) for i in range(order + 1)]
+        np.testing.assert_allclose(np.sum(c), 1, atol=1e-12)
+        np.testing.assert_allclose(moments[1:order], 0, atol=1e-12)
+        assert abs(moments[order]) > 1e-3  # and of no higher one
+        # What passes is nearly that of order-fold heat flow with the same noise, without its tails.
+        S = np.linspace(LEAST, 1, 200)
+        assert np.abs(passed(c, S) - (1 - (1 - np.abs(S) ** m) ** order)).max() < 0.3
+
+
+def test_waves_are_polynomials_in_the_step():
+    flow = CurvatureFlow(TriangleMesh(TORUS.vertices, TORUS.faces))
+    waves, c = Waves(flow, flow.defect_densities), window(4, 3)
+    for _ in range(2):  # anew, and from waves that were kept
+        found = waves.sums([window(32, 3), c])[1]
+    powers = [flow.defect_densities]
+    for _ in c[1:]:
+        powers.append(flow.step(powers[-1]))
+    stretched = np.polynomial.Polynomial([-(1 + LEAST) / (1 - LEAST), 2 / (1 - LEAST)])
+    expected = np.polynomial.Chebyshev(c).convert(kind=np.polynomial.Polynomial)(stretched).coef @ powers
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(powers[0]).max())  # coefficients of up to 1e4
+
+
+@pytest.mark.parametrize("order", [1, 3])
+def test_no_window_reaches_further_than_its_steps_and_next_to_nothing_beyond_its_waves(order):
+    shape = shapes.irregular_torus(8000)
+    mesh = TriangleMesh(shape.vertices, shape.faces)
+    flow, start = CurvatureFlow(mesh), np.zeros(mesh.n_vertices)
+    start[0] = 1.0
+    c = window(16, order)
+    kernel = np.abs(Waves(flow, start).sums([c])[0])
+    away = np.linalg.norm(shape.vertices - shape.vertices[0], axis=1) / np.sqrt(2 / (1 - LEAST) * flow.step_variances)
+    assert kernel[away > 1.5 * len(c)].max() < 1e-3 * kernel.max()
+    assert kernel[away > 2.8 * len(c)].max(initial=0.0) < 1e-13 * kernel.max()
 
 
 # ------------------------------------------------------------------ scale and noise
@@ -123,12 +156,11 @@ def test_noise_of_lengths_has_the_variance_predicted():
         lengths[h // 3, (h % 3 + 2) % 3] += noise
     flow = CurvatureFlow(IntrinsicMesh(mesh.faces, lengths))
     model = LengthNoise.of(flow)
-    values = flow.defect_densities
-    for m in range(13):
-        if m in (0, 1, 2, 4, 8, 12):
-            ratio = np.sqrt(np.mean(values**2) / np.mean(tau**2 * model.variance({m: 1.0})))
-            assert 0.7 < ratio < 1.5, m  # Gaussian weights are an idealisation; 1600 values, fewer independent ones
-        values = flow.step(values)
+    waves = Waves(flow, flow.defect_densities)
+    for m, order in ((0, 1), (1, 1), (2, 2), (4, 1), (4, 3), (8, 2), (12, 1), (12, 3)):
+        c = window(m, order)
+        ratio = np.sqrt(np.mean(waves.sums([c])[0] ** 2) / np.mean(tau**2 * model.variance(c)))
+        assert 0.7 < ratio < 1.5, (m, order)  # S is not quite Gaussian; 1600 values, fewer independent ones
 
 
 def test_spread_covers_the_error_under_noise():

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.flow import N_BLOCKS, CurvatureFlow
 from rinow.curvature.length_noise import LengthNoise
-from rinow.curvature.powers import Powers, combination
+from rinow.curvature.waves import Waves, window
 from rinow.kernels import arcs, chord_forms
 
 __all__ = ["Arcs", "without_chords"]
@@ -23,8 +23,8 @@ REACH = 4.0
 EVIDENCE = 2.0
 """Corrections count from where they halve the noise: five numbers fitted to fifty vertices take away up to that much by
 chance."""
-SMOOTH = (4, 3)
-"""Steps and order of the mean that shows how the curvature varies over the star of a vertex."""
+SMOOTH = (2, 3)
+"""Scale and order of the mean that shows how the curvature varies over the star of a vertex."""
 
 
 @dataclass(frozen=True)
@@ -84,8 +84,8 @@ def without_chords(flow: CurvatureFlow, noise: LengthNoise) -> tuple[Floats, Flo
         1 where the noise of the defects is that of chords alone, 0 where the form of their curvatures is not seen.
     """
     curved = Arcs(flow)
-    plain = noise.level(flow, Powers(flow, flow.defect_densities))
-    left = noise.level(flow, Powers(flow, curved.curvatures(np.ones(len(plain)))))
+    plain = noise.level(flow, Waves(flow, flow.defect_densities))
+    left = noise.level(flow, Waves(flow, curved.curvatures(np.ones(len(plain)))))
     ratio = np.divide(left, plain, out=np.ones_like(plain), where=plain > 0.0)
     shares = np.maximum(1.0 - EVIDENCE * np.where(np.isfinite(ratio), ratio, 1.0), 0.0)
     return _at_vertices(flow, curved.curvatures(shares)), shares
@@ -97,7 +97,7 @@ def _at_vertices(flow: CurvatureFlow, means: Floats) -> Floats:
     A defect is the integral of K times the hat function of its vertex.  The first moment of a hat is 0 on average, so
     that a linear K on each face, which is off by half the second moment, is corrected by half its own mean.
     """
-    smooth = np.nan_to_num(Powers(flow, means).combined(combination(*SMOOTH)))
+    smooth = np.nan_to_num(Waves(flow, means).sums([window(*SMOOTH)])[0])
     hats = np.empty_like(means)
     arcs.hat_means(smooth, flow.areas, flow.metric, hats)
     difference = np.where(flow.has_data, hats - smooth, 0.0)

@@ -29,7 +29,7 @@ NEEDLES = 3.0
 
 @dataclass(frozen=True)
 class CurvatureFlow:
-    """The powers S^m of a local linear regression S, applied to angle defect over area.
+    """A local linear regression S of angle defect over area, which averages over larger balls when it is repeated.
 
     Attributes
     ----------

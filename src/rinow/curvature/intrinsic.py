@@ -14,8 +14,8 @@ from rinow.curvature.arcs import without_chords
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.length_noise import LengthNoise
-from rinow.curvature.powers import LADDER, ORDER, REFERENCE, Powers, combination
 from rinow.curvature.unseen import unseen_error
+from rinow.curvature.waves import LADDER, ORDER, REFERENCE, Waves, window
 from rinow.kernels import patch_order
 from rinow.kernels.risks import CLEAR
 from rinow.mesh import IntrinsicMesh, TriangleMesh
@@ -24,8 +24,8 @@ __all__ = ["IntrinsicCurvature", "intrinsic", "intrinsic_curvature"]
 
 Floats = NDArray[np.float64]
 
-PASSES, SHRINK_PASSES = 10, 40
-"""Repetitions of the mean over a ring that average squared errors."""
+PASSES, SHRINK_PASSES = (5, 16), 12
+"""Repetitions of the mean over a ring that average squared errors: least and most, a third of the scale between."""
 VARIANCE_PASSES = 3
 """The same for the mean that a variance is raised to."""
 CALIBRATION = 1.5
@@ -86,7 +86,7 @@ def intrinsic_curvature(
     radius : float, optional
         Radius of the balls in units of length, or the nearest to it that competes; by default the best of all.
     most_steps : int, optional
-        Largest scale that competes, in steps of the flow.
+        Largest scale that competes, in units of that of one step.
 
     Returns
     -------
@@ -131,8 +131,8 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
     flow = CurvatureFlow(mesh)
     noise = LengthNoise.of(flow)
     start, shares = without_chords(flow, noise)
-    powers = Powers(flow, start)
-    tau2 = noise.level(flow, powers)
+    waves = Waves(flow, start)
+    tau2 = noise.level(flow, waves)
     n = mesh.n_vertices
     bias, unseen, radii = np.zeros((3, n))
     best = IntrinsicCurvature(np.full(n, np.nan), np.full(n, np.inf), bias, unseen, radii, shares)
@@ -141,11 +141,10 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
     for m in LADDER[: bisect_right(LADDER, most_steps)]:
         here = None if wanted is None else wanted == m
         if here is None or here.any():
-            improved = [_improve(best, candidate, here) for candidate in _candidates(m, flow, noise, powers, tau2)]
+            improved = [_improve(best, candidate, here) for candidate in _candidates(m, flow, noise, waves, tau2)]
             idle = 0 if any(improved) else idle + 1
         if idle == IDLE and here is None:
             break
-        powers.forget(m + 1)
     best.gaussian[_is_flat(flow) & np.isfinite(best.gaussian)] = 0.0
     _shrink(best, flow)
     scale = best.radius**2 / SUPPORT
@@ -178,26 +177,29 @@ def _shrink(best: IntrinsicCurvature, flow: CurvatureFlow) -> None:
         best.gaussian[:] *= np.where(total > 0.0, np.clip((1.0 - error / total) / (1.0 - CLEAR), 0.0, 1.0), 1.0)
 
 
-def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats) -> Iterator[Candidate]:
-    """The estimates of one scale, for all orders, one after the other to keep few of them in memory."""
+def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, waves: Waves, tau2: Floats) -> Iterator[Candidate]:
+    """The estimates of one scale, for all orders."""
     radius = np.sqrt(np.fmax(SUPPORT * m * noise.step, flow.spacing**2))
-    for order in range(1, ORDER + 1 if m else 2):
-        taken = combination(m, order) if m else {0: 1.0}
-        values = powers.combined(taken) if m else np.where(flow.has_data, powers[0], np.nan)
-        variance = _product(tau2, noise.variance(taken))
+    orders = range(1, ORDER + 1 if m else 2)
+    windows = [window(m, order) for order in orders]
+    differences = [_difference(_reference(m, order), c) for order, c in zip(orders, windows, strict=True)] if m else []
+    sums = waves.sums(windows + differences)
+    for i, c in enumerate(windows):
+        values = sums[i] if m else np.where(flow.has_data, sums[i], np.nan)
+        variance = _product(tau2, noise.variance(c))
         variance[~np.isfinite(values)] = np.nan
         variance = np.fmax(variance, flow.means(variance, VARIANCE_PASSES))
-        bias = _squared_bias(m, order, flow, noise, powers, tau2) if m else np.zeros(len(radius))
+        bias = np.zeros(len(radius))
+        if m:
+            bias = _squared_bias(m, sums[len(windows) + i], flow, _product(tau2, noise.variance(differences[i])))
         yield values, variance, bias, radius
 
 
-def _squared_bias(m: int, order: int, flow: CurvatureFlow, noise: LengthNoise, powers: Powers, tau2: Floats) -> Floats:
+def _squared_bias(m: int, difference: Floats, flow: CurvatureFlow, seen: Floats) -> Floats:
     """What a candidate differs by from its reference, squared, less the noise of that."""
-    difference = _difference(_reference(m, order), combination(m, order))
-    seen = _product(tau2, noise.variance(difference))
-    excess = powers.combined(difference) ** 2 - seen
+    excess = difference**2 - seen
     seen = np.fmax(seen, flow.means(seen, VARIANCE_PASSES))
-    return np.fmax(flow.means(excess, max(PASSES, m)), FLOOR * seen)
+    return np.fmax(flow.means(excess, int(np.clip(m // 3, *PASSES))), FLOOR * seen)
 
 
 def _product(noise: Floats, variance: Floats) -> Floats:
@@ -206,15 +208,16 @@ def _product(noise: Floats, variance: Floats) -> Floats:
         return noise * variance
 
 
-def _reference(m: int, order: int) -> dict[int, float]:
-    """What the candidate of m steps and this order is compared with: half the steps, an order more if there is one."""
+def _reference(m: int, order: int) -> Floats:
+    """What the candidate of this scale and order is compared with: half the scale, an order more if there is one."""
     half = REFERENCE[m]
-    return combination(half, order + 1 if half == m else min(order + 1, ORDER))
+    return window(half, order + 1 if half == m else min(order + 1, ORDER))
 
 
-def _difference(a: dict[int, float], b: dict[int, float]) -> dict[int, float]:
+def _difference(a: Floats, b: Floats) -> Floats:
     """Coefficients of a minus those of b."""
-    return {k: a.get(k, 0.0) - b.get(k, 0.0) for k in {*a, *b}}
+    n = max(len(a), len(b))
+    return np.pad(a, (0, n - len(a))) - np.pad(b, (0, n - len(b)))
 
 
 def _improve(best: IntrinsicCurvature, candidate: Candidate, where: NDArray[np.bool_] | None) -> bool:
@@ -247,16 +250,16 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
     Notes
     -----
     By Gauss and Bonnet every metric curvature at a scale is a weighted mean of angle defects.  Here the weights are
-    the powers of one small operator S, a regression over 2.1 spacings in the developed metric that
+    polynomials in one small operator S, a regression over 2.1 spacings in the developed metric that
 
     - keeps constants, and linear functions away from the boundary: it adds no error of first order,
     - keeps the total curvature, so that its weights vary smoothly from defect to defect and the noise of each
       length, which enters four defects with the sum 0, cancels.
 
-    :math:`S^m` then averages like the heat flow at the time :math:`m\sigma^2/2`.  With K the defects over areas the
-    candidates are :math:`K_{m,r} = (I - (I - S^m)^r) K`, with the errors :math:`(I - S^m)^r K`, of order 2r in scale,
-    for r = 1, 2, 3 and m = 0, 1, 2, 3, 4, 6, ... 128.  At each vertex the one with the least sum of variance and
-    squared bias is taken.  The variance is that of `LengthNoise`, its level from the residuals of small fits.  The
+    The candidates :math:`K_{m,r}` are averages of the defects over areas with weights that end at a distance, of
+    order 2r in it, for r = 1, 2, 3, and with as much noise as the mean :math:`(I - (I - S^m)^r) K` by heat flow for
+    m = 0, 1, 2, 3, 4, 6, ... 128: see `rinow.curvature.waves`.  At each vertex the one with the least sum of variance
+    and squared bias is taken.  The variance is that of `LengthNoise`, its level from the residuals of small fits.  The
     squared bias of :math:`K_{m,r}` is the mean over a neighbourhood of :math:`(K_{m/2,r+1} - K_{m,r})^2`,
     less the variance of this difference.  At the end the values are multiplied by
     :math:`(1 - \langle error^2 \rangle / \langle K^2 \rangle) / 0.95`, cut to between 0 and 1 (after James and

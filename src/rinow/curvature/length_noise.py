@@ -1,15 +1,14 @@
-"""How errors of edge lengths, independent of each other, reach the averages of angle defects."""
+"""How errors of edge lengths, independent of each other, reach averages of angle defects."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.flow import CurvatureFlow
-from rinow.curvature.powers import Powers, combination
+from rinow.curvature.waves import Waves, passed, window
 from rinow.kernels import smoothing
 
 __all__ = ["LengthNoise"]
@@ -20,21 +19,24 @@ GAUSSIAN = 3.0 / (16.0 * np.pi)
 """Integral of the squared second derivative across any line of a Gaussian density of variance 1 in the plane."""
 
 NOISE_PROBES = ((2, 2), (4, 2), (8, 2), (8, 3))
-"""Steps and order of the fits whose residuals tell the noise; the smallest residual counts."""
-LEVEL_PASSES = 10
+"""Scale and order of the fits whose residuals tell the noise; the smallest residual counts."""
+TIMES, STARTS = np.geomspace(1e-5, 1e4, 500), np.geomspace(1e-2, 1e2, 25)
+"""Squared frequencies times σ² that the noise is integrated over, and s0² over σ² that this is done for."""
+LEVEL_PASSES = 6
 """Repetitions of the mean over a ring that average squared residuals."""
 
 
 @dataclass(frozen=True)
 class LengthNoise:
-    r"""Variances of combinations of powers S^m K for edge lengths of standard deviation 1.
+    r"""Variances of windows of waves for edge lengths of standard deviation 1.
 
-    The weights c of the defects in S^m K are nearly those of a Gaussian of variance :math:`s^2 = m\sigma^2` along each
-    axis.  An error of a length changes the sum of defects by the jump of the slope of c across that edge, which is the
-    second derivative of c times half the heights over the edge, whence the variance
+    The weights c of the defects in :math:`S^m K` are nearly those of a Gaussian of variance :math:`s^2 = m\sigma^2`
+    along each axis.  An error of a length changes the sum of defects by the jump of the slope of c across that edge,
+    which is the second derivative of c times half the heights over the edge, whence the variance
     :math:`\rho \, 3 / (16\pi s^6)` with the sum ρ of the squares of half heights per area.  A variance
     :math:`s_0^2` is added to :math:`s^2` that makes it right for m = 0 as well, where the sum of squared derivatives of
-    the defect is known.
+    the defect is known.  A window that passes the share q of the frequency k has, likewise,
+    :math:`\rho \, 3 / (16\pi) \int q^2 e^{-s_0^2 k^2} k^5 dk`.
 
     Attributes
     ----------
@@ -61,23 +63,19 @@ class LengthNoise:
         start[~(flow.has_data & np.isfinite(start))] = 0.0
         return cls(np.ascontiguousarray(density), start, np.ascontiguousarray(step), squares)
 
-    def variance(self, combination: Mapping[int, float]) -> Floats:
-        """(n_vertices,): variance of the sum of coefficient times S^m K over the items m: coefficient."""
-        items = list(combination.items())
-        total = np.zeros(len(self.start))
-        for i, (m, a) in enumerate(items):
-            for k, b in items[: i + 1]:
-                scale = 0.5 * (m + k) * self.step + self.start
-                with np.errstate(all="ignore"):
-                    total += (1.0 if k == m else 2.0) * a * b / (scale * scale * scale)
-        return GAUSSIAN * self.density * total
+    def variance(self, coefficients: Floats) -> Floats:
+        """(n_vertices,): variance of the sum of coefficient times wave."""
+        squares = passed(coefficients, np.exp(-0.5 * TIMES)) ** 2 * TIMES**3
+        integrals = 0.5 * np.exp(-np.multiply.outer(STARTS, TIMES)) @ squares * np.log(TIMES[1] / TIMES[0])
+        with np.errstate(all="ignore"):
+            at_start = np.interp(np.log(self.start / self.step), np.log(STARTS), np.log(integrals))
+            return GAUSSIAN * self.density * np.exp(at_start) / self.step**3
 
-    def level(self, flow: CurvatureFlow, powers: Powers) -> Floats:
+    def level(self, flow: CurvatureFlow, waves: Waves) -> Floats:
         """(n_vertices,): variance of the edge lengths that the residuals of smooth fits show around each vertex."""
         least = np.full(len(flow.areas), np.nan)
-        for m, order in NOISE_PROBES:
-            residuals = flow.areas * (powers[0] - powers.combined(combination(m, order)))
+        for fit in waves.sums([window(*probe) for probe in NOISE_PROBES]):
             with np.errstate(all="ignore"):
-                squares = np.where(flow.has_data, residuals**2 / self.sensitivity, np.nan)
+                squares = np.where(flow.has_data, (flow.areas * (waves.start - fit)) ** 2 / self.sensitivity, np.nan)
             np.fmin(least, flow.means(squares, LEVEL_PASSES), out=least)
         return least

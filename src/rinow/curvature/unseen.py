@@ -9,6 +9,7 @@ from scipy.special import ndtr
 
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.length_noise import LengthNoise
+from rinow.curvature.waves import Waves, window
 from rinow.geodesics.edge_graph import edge_graph
 
 __all__ = ["unseen_error"]
@@ -94,13 +95,10 @@ def _left_over(
 ) -> Floats:
     """(n_vertices,): mean square of what the estimate leaves, averaged over a part of its steps, less the noise."""
     rungs, left = _rungs(steps / PART, LONGEST - 3), np.zeros(len(residual))
-    current, done = np.nan_to_num(residual), 0
-    for rung in range(int(rungs.max(initial=0)) + 1):
-        for _ in range(2**rung - done):
-            current = flow.step(current)
-        done = 2**rung
+    windows = [window(2**rung, 1) for rung in range(int(rungs.max(initial=0)) + 1)]
+    for rung, mean in enumerate(Waves(flow, np.nan_to_num(residual)).sums(windows)):
         with np.errstate(invalid="ignore"):
-            columns = np.column_stack([current**2, level * noise.variance({2**rung: 1.0})])
+            columns = np.column_stack([mean**2, level * noise.variance(windows[rung])])
         columns[~(distance > BESIDE * np.sqrt(2**rung * noise.step))] = np.nan
         square, expected = flow.means(columns, PASSES).T
         here = (rungs == rung) & np.isfinite(square)
