@@ -12,7 +12,7 @@ from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
-from rinow.kernels.patch_fits import GAUSSIAN, MEAN
+from rinow.kernels.patch_fits import BOTH, GAUSSIAN, MEAN
 
 __all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "levelled", "sample", "scales", "select", "windows"]
 
@@ -118,9 +118,9 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
     n_radii, level = len(ladder.reaches), frames.copy()
-    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, n_radii, GAUSSIAN, links, tasks)
+    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, n_radii, BOTH, links, tasks)
     level[:, 9:] = 0.0
-    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, n_radii, GAUSSIAN, links, tasks)
+    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, n_radii, BOTH, links, tasks)
     choice = levelled(frames, choice, over_plane)
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)

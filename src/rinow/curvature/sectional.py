@@ -62,7 +62,7 @@ class Search(NamedTuple):
 
 NARROW = 3
 """Another time only so many radii more and less than that chosen are looked at."""
-INSIDE, BESIDE = Search(patch_fits.GAUSSIAN, 1, 2.2), Search(patch_fits.BOTH, 2, 4.5)
+INSIDE, BESIDE = Search(patch_fits.BOTH, 1, 2.2), Search(patch_fits.BOTH, 2, 4.5)
 """Centres inside and beside a boundary; there they lie in a strip and their first frames are poor."""
 
 
