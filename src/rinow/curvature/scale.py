@@ -12,7 +12,7 @@ from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
-from rinow.kernels.patch_fits import BOTH, GAUSSIAN, MEAN
+from rinow.kernels.patch_fits import BOTH, MEAN
 
 __all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "levelled", "sample", "scales", "select", "windows"]
 
@@ -60,7 +60,7 @@ class Ladder(NamedTuple):
 
     def fitting(
         self, task: int, sheet: balls.Sheet, centres: Ints, frames: Floats, low: Ints, high: Ints, orders: Ints,
-        rows: NDArray[np.int64], noise: Floats, errors_of: int = GAUSSIAN,
+        rows: NDArray[np.int64], noise: Floats, errors_of: int = BOTH,
     ) -> Fitting:  # fmt: skip
         """Fits about some vertices to the balls of the given indices."""
         own = patch_driver.Centres(centres, frames, low, high, self.factors[centres], orders, rows, noise)
@@ -86,7 +86,7 @@ class Samples(NamedTuple):
     """What the sample tells.
 
     For each vertex the samples near it (compressed rows); for each sample the vertices it speaks for (compressed rows),
-    its logarithmic risks of H over the plane, and of K over the torus and over its plane, for each radius and order,
+    its logarithmic risks of H over the plane, and of both over the torus and over its plane, for each radius and order,
     its choice, noise and spacing.
     """
 
@@ -213,14 +213,14 @@ def levelled(frames: Floats, choice: Choice, over_plane: Choice) -> Choice:
 
 def select(
     sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, window: tuple[Ints, Ints, Ints, Floats],
-    links: tuple[Ints, Ints], passes: int, errors_of: int, tasks: Tasks,
+    links: tuple[Ints, Ints], passes: int, tasks: Tasks,
 ) -> Choice:  # fmt: skip
     """The least risk of each centre among the radii low..high and orders up to `top`, for known noise."""
     low, high, top, noise = window
     spacing = sheet.spacing[centres]
     rows = np.zeros(len(centres) + 1, np.int64)
     np.cumsum(high - low + 1, out=rows[1:])
-    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise, errors_of)
+    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise)
     place, no_logs = (rows, low, high, links, passes), np.empty((0, 0, 0))
     return _least(ladder, spacing, 4, fill_tables(fitting, True, tasks, 0.4), *place, no_logs)
 
