@@ -201,9 +201,7 @@ def _evidence(theta: Floats, jumps: Floats, errors: Floats) -> tuple[Bools, Bool
     return strong, weak
 
 
-def _linked(
-    turnings: EdgeTurnings, strong: Bools, weak: Bools, jumps: Floats, errors: Floats, between: bool
-) -> Bools:
+def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, jumps: Floats, errors: Floats, between: bool) -> Bools:
     """Lines of strong edges continued by weak ones, without whiskers, doubled edges and crumbs.
 
     A crease is convex or concave all along, while lines of slivers bend to and fro: long is what is so with one sign.

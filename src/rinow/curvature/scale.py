@@ -12,7 +12,7 @@ from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
-from rinow.kernels.patch_fits import BOTH, MEAN
+from rinow.kernels.patch_fits import BOTH, GAUSSIAN, MEAN
 
 __all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "levelled", "sample", "scales", "select", "windows"]
 
@@ -103,7 +103,11 @@ class Samples(NamedTuple):
 
 
 def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, sizes: Ints | None = None) -> Samples:
-    """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices."""
+    """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices.
+
+    A sample that chooses for the centres near it does so by the errors of K and H, as they do by themselves; where it
+    only says where they look, by those of K.
+    """
     from scipy.sparse import csr_array
 
     n = len(sheet.vertices)
@@ -117,10 +121,10 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), choice, tasks)
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
-    n_radii, level = len(ladder.reaches), frames.copy()
-    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, n_radii, BOTH, links, tasks)
+    n_radii, level, errors_of = len(ladder.reaches), frames.copy(), GAUSSIAN if is_refined else BOTH
+    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, n_radii, errors_of, links, tasks)
     level[:, 9:] = 0.0
-    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, n_radii, BOTH, links, tasks)
+    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, n_radii, errors_of, links, tasks)
     choice = levelled(frames, choice, over_plane)
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
