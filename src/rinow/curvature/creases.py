@@ -173,10 +173,10 @@ def crease_lines_of(turnings: EdgeTurnings) -> CreaseLines:
     candidates = np.flatnonzero((np.abs(theta) >= least) | flat)
     ends = _ends_of_sections(theta, turnings.noise)
     is_crease, jumps, errors = np.zeros(len(theta), np.bool_), theta, theta
-    for _ in range(2):
+    for is_last in (False, True):
         jumps, errors = turnings.jumps(candidates, ends)
         strong, weak = _evidence(theta, jumps, errors)
-        is_crease = _linked(turnings, strong, weak, np.abs(jumps), errors)
+        is_crease = _linked(turnings, strong, weak, jumps, errors, is_last)
         ends = np.where(is_crease, creases.END, np.minimum(ends, creases.END_STRAIGHT)).astype(np.int8)
     degrees, turns = np.empty(mesh.n_vertices, np.intp), np.empty(mesh.n_vertices)
     t = mesh.topology
@@ -210,8 +210,12 @@ def _evidence(theta: Floats, jumps: Floats, errors: Floats) -> tuple[Bools, Bool
     return strong, weak
 
 
-def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, strength: Floats, errors: Floats) -> Bools:
-    """Lines of strong edges continued by weak ones, without whiskers, doubled edges and crumbs."""
+def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, jumps: Floats, errors: Floats, between: bool) -> Bools:
+    """Lines of strong edges continued by weak ones, without whiskers, doubled edges and crumbs.
+
+    A crease is convex or concave all along, while lines of slivers bend to and fro: long is what is so with one sign.
+    """
+    strength = np.abs(jumps)
     mesh, index = turnings.mesh, turnings.edge_of_halfedge
     t = mesh.topology
     rows = (index, t.corner_offsets, t.vertex_corners)
@@ -223,7 +227,28 @@ def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, strength: Floats
     may_end = t.vertex_is_boundary | t.vertex_is_on_nonmanifold_edge
     weights = np.where((strength > SHARP_ANGLE) & (strength > SHARP_NOISE * errors), 2, 1)
     crease_lines.remove_short_ends(kept, weights, t.edges, may_end, *rows, LEAST_OPEN_LINE)
-    labels = crease_lines.line_components(kept, t.edges, mesh.n_vertices)
-    sizes = np.bincount(labels[kept], minlength=mesh.n_vertices)
-    starts = np.bincount(labels[kept & strong], minlength=mesh.n_vertices)
+    sides = [kept & (jumps > 0.0), kept & (jumps < 0.0)]
+    labels = [crease_lines.line_components(side, t.edges, mesh.n_vertices) for side in sides]
+    lines = [_long_lines(side, label, strong, mesh.n_vertices) for side, label in zip(sides, labels, strict=True)]
+    found = lines[0] | lines[1]
+    if between:
+        on_line = np.zeros(mesh.n_vertices, np.bool_)
+        on_line[t.edges[found]] = True
+        for side, label in zip(sides, labels, strict=True):
+            found |= _between(side, label, t.edges, on_line)
+    return found
+
+
+def _long_lines(kept: Bools, labels: Indices, strong: Bools, n_vertices: int) -> Bools:
+    """Edges in lines of enough edges, enough of them strong."""
+    sizes = np.bincount(labels[kept], minlength=n_vertices)
+    starts = np.bincount(labels[kept & strong], minlength=n_vertices)
     return kept & (sizes[labels] >= LEAST_LINE) & (starts[labels] >= LEAST_STRONG)
+
+
+def _between(kept: Bools, labels: Indices, edges: Indices, on_line: Bools) -> Bools:
+    """Edges in lines that end on long ones, such as the three edges of a step between two corners."""
+    own = np.full(len(on_line), -1, np.intp)
+    own[edges[kept]] = labels[kept][:, None]
+    ends = np.bincount(own[on_line & (own >= 0)], minlength=len(on_line))
+    return kept & (ends[labels] >= 2)

@@ -61,7 +61,7 @@ class Ladder(NamedTuple):
 
     def fitting(
         self, task: int, sheet: balls.Sheet, centres: Ints, frames: Floats, low: Ints, high: Ints, orders: Ints,
-        rows: NDArray[np.int64], noise: Floats, errors_of: int = GAUSSIAN, bent: Floats | None = None,
+        rows: NDArray[np.int64], noise: Floats, errors_of: int = BOTH, bent: Floats | None = None,
     ) -> Fitting:  # fmt: skip
         """Fits about some vertices to the balls of the given indices; `bent` are frames that tell the curvedness."""
         curvedness = np.sqrt(0.5) * np.linalg.norm((frames if bent is None else bent)[:, 9:], axis=1)
@@ -88,8 +88,8 @@ class Samples(NamedTuple):
     """What the sample tells.
 
     The vertices in the order in which they become centres; for each vertex the samples near it (compressed rows); for
-    each sample the vertices it speaks for (compressed rows), its logarithmic risks of H over the plane, of K over the
-    torus, and of both over its plane, for each radius and order, its choice, noise and spacing.
+    each sample the vertices it speaks for (compressed rows), its logarithmic risks of H over the plane, and of both over
+    the torus and over its plane, for each radius and order, its choice, noise and spacing.
     """
 
     turns: Ints
@@ -106,7 +106,12 @@ class Samples(NamedTuple):
 
 
 def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, sizes: Ints | None = None) -> Samples:
-    """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices."""
+    """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices.
+
+    A sample that chooses for the centres near it does so by the errors of K and H, as they do by themselves; where it
+    only says where they look, by those of K.  For planes both are asked: where a surface is developable, as a cylinder
+    is, K is 0 over a plane in the largest ball, however wrong H is.
+    """
     from scipy.sparse import csr_array
 
     n = len(sheet.vertices)
@@ -119,13 +124,16 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     n_radii = len(ladder.reaches)
     last = np.full(m, n_radii - 1, np.int32)
     pilot = np.minimum(last, PILOT_RADII - 1)
-    plane_logs, choice, _ = _examine(sheet, ladder, centres, flat_frames(sheet, centres), pilot, MEAN, links, tasks)
-    frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), choice, tasks)
+    flat = flat_frames(sheet, centres)
+    plane_logs, choice, _ = _examine(sheet, ladder, centres, flat, flat, pilot, MEAN, links, tasks)
+    frames = ladder.frames(sheet, centres, flat, choice, tasks)
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
-    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, last, GAUSSIAN, links, tasks)
-    last = np.minimum(choice.radius + LARGER, n_radii - 1)
-    level_logs, over_plane, _ = _examine(sheet, ladder, centres, frames, last, BOTH, links, tasks)
+    errors_of = GAUSSIAN if is_refined else BOTH
+    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, frames, last, errors_of, links, tasks)
+    level, last = frames.copy(), np.minimum(choice.radius + LARGER, n_radii - 1)
+    level[:, 9:] = 0.0
+    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, frames, last, BOTH, links, tasks)
     choice = levelled(frames, choice, over_plane)
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
@@ -141,6 +149,7 @@ def _examine(
     ladder: Ladder,
     centres: Ints,
     frames: Floats,
+    bent: Floats,
     high: Ints,
     errors_of: int,
     links: tuple[Ints, Ints],
@@ -148,17 +157,13 @@ def _examine(
 ) -> tuple[Floats, Choice, Floats]:
     """Logarithmic risks (m, n_radii, 7), choices and noise of samples, whose noise is not known beforehand.
 
-    Each is examined up to the radius of index `high`.  Risks of K are over the tori of the frames, others over their
-    planes.  Both together are asked for there: where a surface is developable, as a cylinder is, K is 0 over a plane in
-    the largest ball, however wrong H is.
+    Each is examined up to the radius of index `high`; `bent` are frames that tell the curvedness.
     """
-    m, n_radii, low, over = len(centres), len(ladder.reaches), np.zeros(len(centres), np.int32), frames.copy()
-    if errors_of != GAUSSIAN:
-        over[:, 9:] = 0.0
+    m, n_radii, low = len(centres), len(ladder.reaches), np.zeros(len(centres), np.int32)
     order = np.full(m, PILOT_ORDER if errors_of == MEAN else MAX_ORDER, np.int32)
     rows, spacing = np.arange(m + 1) * n_radii, sheet.spacing[centres]
     fitting = ladder.fitting(
-        patch_driver.TABLES, sheet, centres, over, low, high, order, rows, spacing**2, errors_of, frames
+        patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, errors_of, bent
     )
     tables = fill_tables(fitting, False, tasks, 0.05)
     residuals = np.empty((m, n_radii * N_ORDERS))
@@ -226,14 +231,14 @@ def levelled(frames: Floats, choice: Choice, over_plane: Choice) -> Choice:
 
 def select(
     sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, window: tuple[Ints, Ints, Ints, Floats],
-    links: tuple[Ints, Ints], passes: int, errors_of: int, tasks: Tasks,
+    links: tuple[Ints, Ints], passes: int, tasks: Tasks,
 ) -> Choice:  # fmt: skip
     """The least risk of each centre among the radii low..high and orders up to `top`, for known noise."""
     low, high, top, noise = window
     spacing = sheet.spacing[centres]
     rows = np.zeros(len(centres) + 1, np.int64)
     np.cumsum(high - low + 1, out=rows[1:])
-    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise, errors_of)
+    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise)
     place, no_logs = (rows, low, high, links, passes), np.empty((0, 0, 0))
     return _least(ladder, spacing, 4, fill_tables(fitting, True, tasks, 0.4), *place, no_logs)
 

@@ -19,7 +19,7 @@ from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, levelled, 
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
-from rinow.kernels import balls, patch_driver, patch_fits, patches, risks
+from rinow.kernels import balls, patch_driver, patches, risks
 from rinow.mesh import TriangleMesh
 
 __all__ = [
@@ -50,19 +50,18 @@ Orders above the last one bend too freely there for a first frame."""
 
 
 class Search(NamedTuple):
-    """How centres look for order and radius: by whose errors (`patch_fits`), how often, and by biases how far around.
+    """How often centres look for order and radius, and by biases how far around.
 
     Each round starts from frames of the fits chosen before; `around` is in radii a patch covers.
     """
 
-    errors_of: int
     rounds: int
     around: float
 
 
 NARROW = 3
 """Another time only so many radii more and less than that chosen are looked at."""
-INSIDE, BESIDE = Search(patch_fits.GAUSSIAN, 1, 2.2), Search(patch_fits.BOTH, 2, 4.5)
+INSIDE, BESIDE = Search(1, 2.2), Search(2, 4.5)
 """Centres inside and beside a boundary; there they lie in a strip and their first frames are poor."""
 
 
@@ -127,9 +126,10 @@ def sectional(
     at all points of a patch around the centre.  All orders 2 to 8 come from one Cholesky factorisation of each ball,
     whose leading blocks are the lower orders.  Of each order d and radius the expected squared error is the variance,
     from the residuals, plus the squared bias, the mean over the patches around of
-    :math:`(K_d - K_{d+2})^2` less the variance of this difference.  The least sum is taken, patches are blended, and K
-    is shrunk towards 0 as far as its mean square does not exceed its mean error (James and Stein).  Where all angles
-    within three rings sum to 2π the surface is isometric to the plane and K is 0.
+    :math:`(K_d - K_{d+2})^2` less the variance of this difference, and to both those of H are added, times the squared
+    curvedness: both curvatures come from one fit.  The least sum is taken, patches are blended, and K is shrunk towards
+    0 as far as its mean square does not exceed its mean error (James and Stein).  Where all angles within three rings
+    sum to 2π the surface is isometric to the plane and K is 0.
 
     See Also
     --------
@@ -230,7 +230,7 @@ def _look(
         own_frames[~frames[own, 9:].any(axis=1), 9:] = 0.0
         frames[own] = own_frames
         del own_frames
-        found = select(sheet, ladder, few, frames[own], (low, high, top, noise), links, PASSES, search.errors_of, tasks)
+        found = select(sheet, ladder, few, frames[own], (low, high, top, noise), links, PASSES, tasks)
         choice.radius[own], choice.order[own], choice.risk[own] = found
         has_fit = found.radius >= 0
         low = np.where(has_fit, np.maximum(low, found.radius - NARROW), low)
