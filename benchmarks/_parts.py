@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -132,7 +133,8 @@ def ruled(low: Floats, high: Floats, ends: tuple[bool, bool], sampling: Sampling
     points = np.concatenate([low[:-1], right, high[:0:-1], left])
     marks = np.repeat([True, ends[1], True, ends[0]], [len(low) - 1, len(right), len(high) - 1, len(left)])
     i, n = np.arange(len(low) - 1), len(low)
-    strip = np.concatenate([np.stack(c, axis=1) for c in ((i, i + 1, 2 * n - 2 - i), (i, 2 * n - 2 - i, 2 * n - 1 - i))])
+    above, before = 2 * n - 2 - i, 2 * n - 1 - i
+    strip = np.concatenate([np.stack(c, axis=1) for c in ((i, i + 1, above), (i, above, before))])
     return Side([Loop(points, marks)], place, mean, coarse=strip)
 
 
@@ -154,13 +156,13 @@ def wall(piece: Piece, height: float, before: bool, after: bool, sampling: Sampl
     n = len(sampled(piece, sampling))
     low = np.stack([np.linspace(0.0, width, n), np.zeros(n)], axis=1)
     mean = sign * 0.5 / radius
-    return ruled(low, low + (0.0, height), (before, after), sampling, place, lambda p: np.full(len(p), mean))
+    return ruled(low, low + np.array((0.0, height)), (before, after), sampling, place, lambda p: np.full(len(p), mean))
 
 
 def lathe(profile: list[tuple[float, float]], sampling: Sampling) -> Part:
     """A solid of revolution by (radius, height) of its corners, from the axis below to the axis above."""
     sides, apexes = [], []
-    for (r, z), (s, w) in zip(profile[:-1], profile[1:], strict=True):
+    for (r, z), (s, w) in pairwise(profile):
         if z == w:
             loops = [all_creases(circle(x, sampling)) for x in (max(r, s), min(r, s)) if x > 0.0]
             sides.append(Side(loops, plane((0, 0, z), (1, 0, 0), (0, -1.0 if s > r else 1.0, 0)), flat))
@@ -183,7 +185,7 @@ def circle(radius: float, sampling: Sampling) -> Floats:
 
 def lifted(place: Map, height: float) -> Map:
     """A map followed by a shift."""
-    return lambda p: place(p) + (0.0, 0.0, height)
+    return lambda p: place(p) + np.array((0.0, 0.0, height))
 
 
 def flank(r: float, z: float, s: float, w: float, sampling: Sampling) -> Side:
@@ -215,5 +217,5 @@ def flank(r: float, z: float, s: float, w: float, sampling: Sampling) -> Side:
     i = np.arange(len(rim) - 1)
     fan = np.stack([i, i + 1, np.full(len(i), len(rim))], axis=1)
     t = opening * np.arange(1, 6) / 6.0
-    more = np.empty((0, 2)) if sampling.is_coarse else np.linalg.norm(down[1]) * np.stack([np.cos(t), np.sin(t)], axis=1)
-    return Side([Loop(points, marks)], place, mean, more, fan)
+    around_apex = np.linalg.norm(down[1]) * np.stack([np.cos(t), np.sin(t)], axis=1) if len(down) > 1 else down[1:]
+    return Side([Loop(points, marks)], place, mean, around_apex, fan)

@@ -1,7 +1,7 @@
 """Sides of generated parts and their meshes, remeshed or as CAD programs write them.
 
-Each side is unrolled into a region of the plane between closed polylines.  Its border is sampled, its inside filled with a
-jittered lattice, or left empty and cut into long triangles.
+Each side is unrolled into a region of the plane between closed polylines.  Its border is sampled, its inside filled
+with a jittered lattice, or left empty and cut into long triangles.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ Indices = NDArray[np.intp]
 Map = Callable[[Floats], Floats]
 Curvature = Callable[[Floats], Floats]
 
+
 class Loop(NamedTuple):
     """A closed polyline of the plane; from point i to the next one lies a crease where `is_crease[i]`."""
 
@@ -27,7 +28,7 @@ class Loop(NamedTuple):
 
 
 class Side(NamedTuple):
-    """Loops of a region, the outer one first and counter-clockwise, its way into space, and its mean curvature there."""
+    """Loops of a region, the outer one first and counter-clockwise, its place in space, and mean curvature there."""
 
     loops: list[Loop]
     place: Map

@@ -121,7 +121,8 @@ def test_corners_with_many_edges_are_no_spikes():
     n, f = len(P), np.arange(1, len(P) - 1)
     V = np.concatenate([np.c_[P, np.zeros(n)], np.c_[P, np.full(n, 0.3)]])
     z = np.zeros_like(f)
-    F = np.concatenate([strips(n, 2)[: n], strips(n, 2)[2 * n : 3 * n], np.c_[z + n, f + n, f + n + 1], np.c_[z, f + 1, f]])
+    walls, lids = strips(n, 2), (np.c_[z + n, f + n, f + n + 1], np.c_[z, f + 1, f])
+    F = np.concatenate([walls[:n], walls[2 * n : 3 * n], *lids])
     mesh = rinow.TriangleMesh(V, F)
     assert crease_barriers(mesh).sum() == 2 * n + 3
     curvature = rinow.surface_curvature(mesh)

@@ -232,8 +232,8 @@ def test_repeated_faces_change_nothing(share_of_faces):
     np.testing.assert_array_equal(other.corners, found.corners)
     np.testing.assert_array_equal(other.cone_points, found.cone_points)
     assert f"{len(more)} faces have the same vertices as another one, and were left out." in other.notes
-    lengths = [rinow.TriangleMesh(part.vertices, F).intrinsic() for F in (part.faces, np.concatenate([part.faces, more]))]
-    one, two = (rinow.singular_features(mesh).cone_angles for mesh in lengths)
+    both = part.faces, np.concatenate([part.faces, more])
+    one, two = (rinow.singular_features(rinow.TriangleMesh(part.vertices, F).intrinsic()).cone_angles for F in both)
     np.testing.assert_array_equal(two, one)
 
 

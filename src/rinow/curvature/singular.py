@@ -105,12 +105,13 @@ def singular_features(mesh: Any) -> SingularFeatures:
 
     Notes
     -----
-    *Creases.*  A straight section runs from each edge to both sides, up to the next crease.  On each side the normal
+    *Creases.*  A straight section runs from each edge to both sides, up to the next crease, or, while creases are not
+    known, up to a turn of 20° after three faces that hardly turn.  On each side the normal
     is taken as a linear function of the distance; the jump J between the two values at the edge is the angle of the
     crease.  The turning over the distance r to both sides is Θ(r) = J + c r, the curvature of the section Θ/(2 r),
     and its exponent d log κ / d log r = -J/Θ; below -½ the edge is a candidate.  It starts a line when J exceeds 20°
     and 4.5 standard errors, and continues one above 12° and 2.5; the errors come from the sections' deviation from
-    their lines and from the noise of the vertices' heights, which is estimated from edges that turn to and fro.
+    their lines, their lengths, and the noise of the vertices' heights, which edges that turn to and fro tell.
     Where both sides are flat to half a degree, 8° are enough.  Lines of fewer than four edges, and open ends of
     fewer than six that do not end at a boundary or another crease, are dropped; edges of 40° and nine standard errors
     count for two there.
