@@ -48,7 +48,8 @@ def cloud_sheet(points: Floats, distances: Floats, near: Indices) -> Cloud:
     `cloud_signs`.
     """
     normals, stars = first_stars(points, near)
-    normals = outward(points, normals, links_of(stars))
+    links = links_of(stars)
+    normals = outward(points, normals, links)
     for rounds in (1, 2) if near.shape[1] > FEW else (2,):
         stars = stars_over(points, normals, near, stars, SKEW)
         links = links_of(stars)
