@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rinow.curvature.cloud_faces import agreed_triangles
 from rinow.curvature.cloud_holes import filled
 from rinow.curvature.cloud_signs import outward
-from rinow.curvature.cloud_stars import agreement, first_stars, links_of, normals_of, stars_over
+from rinow.curvature.cloud_stars import FEW, agreement, first_stars, links_of, normals_of, stars_over
 from rinow.curvature.stencils import NEEDLES
 from rinow.kernels import balls, stencils
 
@@ -42,15 +42,18 @@ class Cloud(NamedTuple):
 def cloud_sheet(points: Floats, distances: Floats, near: Indices) -> Cloud:
     """The sheet of a cloud of distinct finite points, in their order, with their nearest ones.
 
-    Neighbours are those of the Delaunay triangulation of the nearest points, laid over the plane of least squares.
-    Normals are the area vectors of these stars, averaged over the neighbours; their signs are carried along the tree
-    on which normals turn least; see `cloud_signs` for that of the whole.
+    Neighbours are those of the Delaunay triangulation of the nearest points, laid over the plane of least squares of
+    few.  Normals are the area vectors of these stars, averaged over the neighbours, and the stars are laid over these
+    once more if there are enough: planes of few points turn with noise, those of many cut corners.  For the signs see
+    `cloud_signs`.
     """
     normals, stars = first_stars(points, near)
-    normals = outward(points, normals, links_of(stars))
-    stars = stars_over(points, normals, near, stars, SKEW)
     links = links_of(stars)
-    normals = normals_of(points, normals, stars, links, 2)
+    normals = outward(points, normals, links)
+    for rounds in (1, 2) if near.shape[1] > FEW else (2,):
+        stars = stars_over(points, normals, near, stars, SKEW)
+        links = links_of(stars)
+        normals = normals_of(points, normals, stars, links, rounds)
     offsets, neighbours = links.indptr.astype(np.int32), links.indices.astype(np.int32)
     sheet = balls.Sheet(points, normals, offsets, neighbours, _spacing(points, distances, offsets, neighbours), True)
     reach, at_border = distances[:, -1], stars.gaps > BORDER_GAP

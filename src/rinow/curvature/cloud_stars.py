@@ -11,7 +11,7 @@ from scipy.sparse import coo_array, csr_array
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import clouds, stencils
 
-__all__ = ["Stars", "agreement", "first_stars", "links_of", "normals_of", "stars_over"]
+__all__ = ["FEW", "Stars", "agreement", "first_stars", "links_of", "normals_of", "stars_over"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]

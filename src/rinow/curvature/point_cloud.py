@@ -63,8 +63,8 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
 
     Notes
     -----
-    Each point is joined to its neighbours in the Delaunay triangulation of the 36 nearest points over their plane of
-    least squares, and they to it; balls grow over these links as they do over the edges of a mesh, and the same
+    Each point is joined to its neighbours in the Delaunay triangulation of the 36 nearest points over the plane across
+    its normal, and they to it; balls grow over these links as they do over the edges of a mesh, and the same
     polynomials over osculating tori are fitted to them.  The triangles on which the neighbours agree tell, as in a
     mesh, where the surface is flat and where fits over large balls have taken detail for noise.
 
@@ -75,13 +75,14 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
 
     Points far from all others, and points beside the quadric of least moduli through those around them, by eight
     standard deviations of the noise and a third of the spacing, alone or much rarer than those, are left out: they are
-    UNRESOLVED.  So are all of fewer than 24 points, and points whose standard error exceeds 1.5/radius²: where points
-    fill a part of space, near creases, and on most of a curve.
+    UNRESOLVED.  So are all of fewer than 24 points, and points whose standard error exceeds 1.5/radius², unless the
+    stars of their neighbours agree with half of their own: where points fill a part of space, and on most of a curve.
 
-    Where a quadric does not fit all of the nearest points, that through the point is followed outwards, and only points
-    on this sheet are its neighbours.  Sheets are told from each other at nearly all points if they are 1.5 spacings
-    apart in an even sample, two in a random one.  Of nearer ones more and more points are UNRESOLVED, and the spread of
-    the others holds what two sheets taken for one with detail are off.
+    Where a quadric does not fit all of the nearest points, only those that face the same way are neighbours, as on a
+    thin wall.  If stars do not agree then, the sheet through the point is followed outwards, and only points on it are.
+    Sheets are told from each other at nearly all points if they are 1.5 spacings apart in an even sample, two in a
+    random one.  Of nearer ones more and more points are UNRESOLVED, and the spread of the others holds what two sheets
+    taken for one with detail are off.
 
     `spread` is that of the fits of `surface_curvature`.  With much noise a tenth of the points of a border are not seen
     to be there: they have the status OK, but the spread of a border, as all its neighbours do.
