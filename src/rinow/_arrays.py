@@ -35,9 +35,11 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
 
 def as_floats(values: ArrayLike, name: str) -> Floats:
     """Any real numbers as a C-ordered float64 array, masked ones as nan; refuses complex, text and ragged input."""
+    given: Any = values
+    if hasattr(given, "filled") and given.dtype.kind in "fiu":  # numpy.ma
+        given = given.astype(np.float64).filled(np.nan)
     try:
-        masked = isinstance(values, np.ma.MaskedArray) and values.dtype.kind in "fiu"
-        array = values.astype(np.float64).filled(np.nan) if masked else np.asarray(values)
+        array = np.asarray(given)
     except (ValueError, TypeError) as error:
         raise InvalidInputError(f"{name} is not an array of numbers: {error}.") from None
     if array.dtype.kind not in "fiu":
