@@ -173,6 +173,8 @@ BAD = [
     (["compare", "a.ply", "b.obj", "-o", "1.csv", "-o", "2.csv", "-o", "3.csv"], "3.csv is one output too many"),
     (["net", "a.ply"], "size and radius are both missing"),
     (["net", "a.ply", "--size", "9"], "size = 9 is outside 1..8"),
+    (["net", "a.ply", "--size", "2.5"], "size = 2.5 is not a number of points"),
+    (["net", "a.ply", "--size", "2", "-o", "n.csv", "-o", "n.csv"], "n.csv is named twice"),
     (["net", "a.ply", "--size", "2", "--start", "8"], "start = 8 is outside 0..7"),
     (["net", "a.ply", "--size", "2", "-o", "a.ply"], "a.ply is the input"),
 ]
