@@ -39,16 +39,17 @@ def pairs(n_vertices: int) -> dict[str, tuple[Mesh, Mesh]]:
     torus, other = jittered_torus(n_vertices), jittered_torus(n_vertices, seed=21)
     sphere, other_sphere = (fibonacci_sphere(n_vertices, 1.0, turn) for turn in (0.0, 1.0))
     h = np.sqrt(4 * np.pi / n_vertices)
+    shift = np.array([0.3, -0.1, 0.2])
     noise = np.random.default_rng(20).normal(size=torus[0].shape)
 
     def inside(size: float) -> Mesh:
         """A sphere near the centre of the other one, of which all points are nearly as far from it."""
-        return size * (other_sphere[0] + (0.3, -0.1, 0.2)), other_sphere[1]
+        return size * (other_sphere[0] + shift), other_sphere[1]
 
     def with_shell(size: float) -> Mesh:
         """The same together with a sphere around the other one, half of the faces each."""
         V, F = fibonacci_sphere(n_vertices // 2, 1.0, 1.0)
-        return np.concatenate([1.2 * V, size * (V + (0.3, -0.1, 0.2))]), np.concatenate([F, F + len(V)])
+        return np.concatenate([1.2 * V, size * (V + shift)]), np.concatenate([F, F + len(V)])
 
     return {
         "two meshes of one torus": (torus, other),

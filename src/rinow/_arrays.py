@@ -34,9 +34,12 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def as_floats(values: ArrayLike, name: str) -> Floats:
-    """Any real numbers as a C-ordered float64 array; refuses complex, text and ragged input."""
+    """Any real numbers as a C-ordered float64 array, masked ones as nan; refuses complex, text and ragged input."""
+    given: Any = values
+    if hasattr(given, "filled") and given.dtype.kind in "fiu":  # numpy.ma
+        given = given.astype(np.float64).filled(np.nan)
     try:
-        array = np.asarray(values)
+        array = np.asarray(given)
     except (ValueError, TypeError) as error:
         raise InvalidInputError(f"{name} is not an array of numbers: {error}.") from None
     if array.dtype.kind not in "fiu":
@@ -133,7 +136,7 @@ def as_distance_matrix(
     scale = float(D.max())
     _refuse(np.abs(D - D.T) > rtol * scale, D, name, "differs from its transpose; symmetrise the matrix or raise rtol")
     _refuse((np.abs(D) > rtol * scale) & np.eye(len(D), dtype=bool), D, name, "is on the diagonal and must be 0")
-    D = 0.5 * (D + D.T)
+    D = np.where(D == D.T, D, 0.5 * D + 0.5 * D.T)  # halved first: a sum of the largest numbers is none
     np.fill_diagonal(D, 0.0)
     return D
 

@@ -157,6 +157,8 @@ BAD = [
     (["compare", "p.csv", "uneven.csv", "--points"], "uneven.csv: line 3 has 3 numbers, but the first row 2."),
     (["compare", "p.csv", "empty.csv", "--points"], "empty.csv: the file is empty"),
     (["compare", "p.csv", "a.ply", "--points"], "A has points of dimension 2, B of dimension 3"),
+    (["compare", "p.csv", "mixed.csv", "--points"], "mixed.csv: line 1 has 'x' where a number belongs"),
+    (["compare", "p.csv", "text.npy", "--points"], "text.npy: the file is no NPY file"),
     (["compare", "d.npz", "p.csv", "--points"], "d.npz: the archive holds distances, other but none of points"),
     (["compare", "d.npz", "p.csv", "--points", "--distances"], "exclude each other"),
     (["compare", "d.npz", "uneven.csv", "--distances"], "uneven.csv: line 3"),
@@ -171,6 +173,8 @@ BAD = [
     (["compare", "a.ply", "b.obj", "-o", "1.csv", "-o", "2.csv", "-o", "3.csv"], "3.csv is one output too many"),
     (["net", "a.ply"], "size and radius are both missing"),
     (["net", "a.ply", "--size", "9"], "size = 9 is outside 1..8"),
+    (["net", "a.ply", "--size", "2.5"], "size = 2.5 is not a number of points"),
+    (["net", "a.ply", "--size", "2", "-o", "n.csv", "-o", "n.csv"], "n.csv is named twice"),
     (["net", "a.ply", "--size", "2", "--start", "8"], "start = 8 is outside 0..7"),
     (["net", "a.ply", "--size", "2", "-o", "a.ply"], "a.ply is the input"),
 ]
@@ -181,6 +185,8 @@ def test_bad_input_is_one_sentence_and_nothing_is_written(folder, capfd, argumen
     (folder / "text.csv").write_text("1,2\n3,four\n")
     (folder / "uneven.csv").write_text("x,y\n1,2\n1,2,3\n")
     (folder / "empty.csv").write_text("")
+    (folder / "mixed.csv").write_text("1,x\n1,2\n")  # no heading: it would be lost without a word
+    (folder / "text.npy").write_text("1,2\n")
     before = sorted(os.listdir(folder))
     code, out, err = run(capfd, *arguments)
     assert (code, out) == (1, "")

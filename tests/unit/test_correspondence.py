@@ -217,6 +217,14 @@ def test_bad_collections():
         distance_matrix([])
     with pytest.raises(InvalidInputError, match="metric = 'other' is unknown"):
         distance_matrix([LINE], metric="other")
+    for option, message in (
+        ({"time_limit": -1.0}, "time_limit = -1.0 is not a time"),
+        ({"tolerance": 0.0}, "tolerance = 0.0 is not positive"),
+        ({"executor": 3}, "executor of type int has no map"),
+        ({"progress": 3}, "progress is of type int; give a function"),
+    ):
+        with pytest.raises(InvalidInputError, match=message):
+            distance_matrix([LINE], **option)
     with pytest.raises(NotAMetricError, match=r"spaces\[1\]: distances\[0, 1\] = 1 differs") as caught:
         distance_matrix([LINE, [[0, 1], [2, 0]]])
     assert caught.value.witness == (0, 1)

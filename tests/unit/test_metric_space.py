@@ -211,3 +211,15 @@ def test_rtol_is_a_number(rtol):
 def test_collections_are_lists_with_a_metric_by_name(spaces, metric, message):
     with pytest.raises(rinow.InvalidInputError, match=message):
         rinow.distance_matrix(spaces, metric=metric)
+
+
+def test_the_largest_numbers_are_distances():
+    largest = np.finfo(np.float64).max
+    assert rinow.MetricSpace([[0, largest], [largest, 0]]).diameter == largest
+
+
+def test_masked_distances_are_missing():
+    D = np.ma.array([[0.0, 1.0], [1.0, 0.0]], mask=[[False, True], [True, False]])
+    with pytest.raises(rinow.NotAMetricError, match=r"distances\[0, 1\] = nan is not finite"):
+        rinow.MetricSpace(D)
+    assert rinow.MetricSpace(np.ma.array([[0, 2], [2, 0]])).diameter == 2.0

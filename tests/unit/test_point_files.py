@@ -77,3 +77,10 @@ def test_bad_input_is_one_sentence(cloud, capsys, arguments, message):
     assert main(["curvature", *arguments]) == 1
     err = capsys.readouterr().err
     assert message in err and err.count("\n") == 1
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("heading", ["", "x;y;höhe\n"])
+def test_tables_of_spreadsheets_keep_their_first_row(tmp_path, encoding, heading):
+    (tmp_path / "p.csv").write_text(f"{heading}1;2;3\n4;5;6\n", encoding=encoding)
+    np.testing.assert_array_equal(read_points(tmp_path / "p.csv"), [[1, 2, 3], [4, 5, 6]])

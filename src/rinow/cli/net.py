@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast
 
 import numpy as np
 from cyclopts import Parameter
 
 from rinow._version import __version__
 from rinow.cli._terminal import print_counts, print_json, print_notes, working
+from rinow.errors import FileFormatError
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
 from rinow.io.tables import check_table, write_columns
 from rinow.nets.farthest_point import FarthestPointNet, farthest_point_net
@@ -22,7 +23,7 @@ def net(
     mesh: Path,
     /,
     *,
-    size: int | None = None,
+    size: float | None = None,
     radius: float | None = None,
     start: int = 0,
     output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
@@ -52,13 +53,16 @@ def net(
     tables = [path for path in output if path.suffix.lower() == ".csv"]
     meshes = [path for path in output if path not in tables]
     check_outputs(meshes, inputs=[mesh])
-    for path in tables:
-        check_table(path)
+    for i, path in enumerate(tables):
+        check_table(path, inputs=[mesh])
+        if path.resolve() in {other.resolve() for other in tables[:i]}:
+            raise FileFormatError(f"{path} is named twice as an output; choose another name.")
     with working(f"reading {mesh.name}"):
         surface = read_mesh(mesh)
     begin = time.perf_counter()
     with working(f"geodesic distances on {surface.n_vertices:,} vertices"):
-        result = farthest_point_net(surface, size=size, radius=radius, start=start)
+        whole = int(size) if size is not None and size.is_integer() else size  # a type int would round without a word
+        result = farthest_point_net(surface, size=cast(int | None, whole), radius=radius, start=start)
     seconds = time.perf_counter() - begin
     notes = list(surface.notes)
     for path in meshes:

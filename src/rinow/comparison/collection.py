@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
 from rinow._printing import OneLine
+from rinow.comparison.clock import Clock
 from rinow.comparison.correspondence import uniform_distance
 from rinow.comparison.gromov_hausdorff import gromov_hausdorff
-from rinow.comparison.hausdorff import as_point_set, hausdorff_distance
+from rinow.comparison.hausdorff import as_point_set, check_tolerance, hausdorff_distance
 from rinow.comparison.lipschitz import lipschitz_distance
 from rinow.comparison.surfaces import check_connected
 from rinow.errors import InvalidInputError, naming
@@ -75,7 +76,8 @@ def distance_matrix(
     Raises
     ------
     InvalidInputError
-        If `metric` is unknown, there is no space, one is not valid, or the dimensions differ.
+        If `metric` is unknown, there is no space, one is not valid, the dimensions differ, the limit is negative or
+        `tolerance` not positive, or `executor` or `progress` is none.
     NotAMetricError
         If a matrix is not a metric.
 
@@ -98,6 +100,7 @@ def distance_matrix(
         raise InvalidInputError(f"spaces is of type {type(spaces).__name__}; give a list of spaces.") from None
     if not isinstance(metric, str) or metric not in _METRICS:  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InvalidInputError(f"metric = {metric!r} is unknown; give one of {', '.join(map(repr, _METRICS))}.")
+    _check_options(executor, progress, time_limit, tolerance)
     check, compare = _METRICS[metric]
     checked = [check(space, f"spaces[{i}]") for i, space in enumerate(listed)]
     if not checked:
@@ -117,6 +120,16 @@ def distance_matrix(
         if progress is not None:
             progress(done, len(pairs))
     return DistanceMatrix(lower, upper)
+
+
+def _check_options(executor: Any, progress: Any, time_limit: float, tolerance: float) -> None:
+    """Refuse options that would fail at the first pair, or at none."""
+    Clock.of(time_limit)
+    check_tolerance(tolerance)
+    if executor is not None and not callable(getattr(executor, "map", None)):
+        raise InvalidInputError(f"executor of type {type(executor).__name__} has no map; give a pool.")
+    if progress is not None and not callable(progress):
+        raise InvalidInputError(f"progress is of type {type(progress).__name__}; give a function of two numbers.")
 
 
 def _space(value: Any, name: str) -> Any:

@@ -120,8 +120,7 @@ def hausdorff_distance(A: Any, B: Any, *, space: Any = None, tolerance: float = 
     >>> result.lower <= 0.25 <= result.upper, result.distances_a
     (True, array([0.25, 0.25, 0.25, 0.25]))
     """
-    if not 0.0 < as_number(tolerance, "tolerance") < np.inf:
-        raise InvalidInputError(f"tolerance = {tolerance} is not positive; give a share of the diagonal such as 1e-4.")
+    check_tolerance(tolerance)
     if space is not None:
         return _between_subsets(as_metric_space(space).distances, A, B)
     if is_mesh_like(A) or is_mesh_like(B):
@@ -130,6 +129,12 @@ def hausdorff_distance(A: Any, B: Any, *, space: Any = None, tolerance: float = 
     if P.shape[1] != Q.shape[1]:
         raise InvalidInputError(f"A has points of dimension {P.shape[1]}, B of dimension {Q.shape[1]}; give the same.")
     return _between_points(P, Q)
+
+
+def check_tolerance(tolerance: float) -> None:
+    """Refuse a tolerance that is not positive and finite."""
+    if not 0.0 < as_number(tolerance, "tolerance") < np.inf:
+        raise InvalidInputError(f"tolerance = {tolerance} is not positive; give a share of the diagonal such as 1e-4.")
 
 
 def _as_surface(value: Any, name: str) -> TriangleMesh | Floats:

@@ -83,7 +83,7 @@ def _check_exists(path: Path) -> None:
     if not path.exists():
         raise FileFormatError("there is no such file; check the name and the folder.")
     if path.is_dir():
-        raise FileFormatError("this is a folder; give the name of a mesh file.")
+        raise FileFormatError("this is a folder; give the name of a file in it.")
     if not path.is_file():
         raise FileFormatError("this is not a regular file; save the mesh to disk first.")
     if path.stat().st_size == 0:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import zipfile
 from collections.abc import Iterable, Mapping
@@ -25,6 +26,9 @@ Floats = NDArray[np.float64]
 
 TEXT = (".csv", ".tsv", ".txt", ".xyz", ".dat")
 TABLE_SUFFIXES = (*TEXT, ".npy", ".npz")
+MARKS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
+"""Marks at the beginning of text written by spreadsheets."""
+
 POINT_NAMES = ("points", "P", "V")
 DISTANCE_NAMES = ("distances", "D")
 
@@ -92,6 +96,9 @@ def _read_table(file: Path, names: tuple[str, ...]) -> Floats:
         if suffix == ".npz":
             table = _chosen(read_arrays(file), names)
         elif suffix == ".npy":
+            with file.open("rb") as stream:
+                if stream.read(len(npy.MAGIC_PREFIX)) != npy.MAGIC_PREFIX:
+                    raise FileFormatError("the file is no NPY file, or it is damaged; export it again.")
             table = np.load(file, allow_pickle=False)
         else:
             raise FileFormatError(f"the suffix is none of {' '.join(TABLE_SUFFIXES)}; convert the table to CSV.")
@@ -111,10 +118,13 @@ def _chosen(arrays: Mapping[str, NDArray[np.generic]], names: tuple[str, ...]) -
 
 
 def _from_text(text: bytes) -> Floats:
-    """Rows of numbers; blank lines and comments are skipped, and so is a heading."""
+    """Rows of numbers; blank lines and comments are skipped, and so is a heading: a first row without any number."""
+    for mark, encoding in MARKS.items():
+        if text.startswith(mark):
+            text = text.decode(encoding, errors="replace").encode()
     lines = text.replace(b",", b" ").replace(b";", b" ").replace(b"\r", b"\n").split(b"\n")
     kept = [i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith(b"#")]
-    if kept and not _is_numeric(lines[kept[0]]):
+    if kept and not any(_is_number(word) for word in lines[kept[0]].split()):
         del kept[0]
     if not kept:
         raise FileFormatError("the file holds no numbers; give one row per line.")
@@ -126,9 +136,9 @@ def _from_text(text: bytes) -> Floats:
     return values.reshape(len(kept), int(counts[0]))
 
 
-def _is_numeric(line: bytes) -> bool:
+def _is_number(word: bytes) -> bool:
     try:
-        _ = [float(word) for word in line.split()]
+        float(word)
     except ValueError:
         return False
     return True
