@@ -64,6 +64,22 @@ def test_a_hole_changes_little_of_a_noisy_surface(quality, most):
     assert np.median(reach) < most - 4
 
 
+@pytest.mark.parametrize(("noise", "most", "share"), [(0.0, 42, 0.25), (0.01, 52, 0.4)])
+def test_a_hole_changes_averages_of_angle_defects_around_it_only(noise, most, share):
+    # Windows of up to 20 spacings without noise and 28 with it, and once more half as far to where they have 1e-12 of
+    # themselves; the rest is of vertices for which two scales are nearly as good.
+    shape = shapes.noisy(shapes.irregular_torus(16_000), noise)
+    v = 100
+    face = (shape.faces == v).any(axis=1).argmax()
+    whole = surface_curvature((shape.vertices, shape.faces), method="intrinsic").gaussian
+    with_hole = surface_curvature((shape.vertices, np.delete(shape.faces, face, axis=0)), method="intrinsic").gaussian
+    change = np.abs(with_hole - whole) / np.abs(whole).max()
+    away = spacings_from(shape, shape.faces[face])
+    assert away.max() > 1.3 * most
+    assert away[change > 1e-12].max() < most
+    assert np.count_nonzero(change > 1e-12) < share * len(change)
+
+
 @pytest.mark.parametrize("quality", ["best", "fast"])
 @pytest.mark.parametrize("noise", [0.0, 0.01])
 def test_the_order_of_faces_changes_rounding_only(noise, quality):

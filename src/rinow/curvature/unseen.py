@@ -30,8 +30,6 @@ ROUGH = 1.7
 """Share by which noise of the positions makes areas larger, over that of the lengths in it.  Noise σ of the positions
 adds 2(σ/h)² to the area of equilateral triangles of side h, up to twice that to stretched ones, and defects as if by
 errors of lengths of at least 1.7(σ/h)² h, the part that flat surfaces have too."""
-STEEPER = 1.2
-"""Gradient of K over that of its averages, which lie flat at a boundary."""
 LONGEST = 7
 """Binary logarithm of the most steps."""
 
@@ -125,4 +123,4 @@ def _drift(
         variance = np.maximum(columns[:, 1] - columns[:, 0] ** 2, 0.0)
         here = near & (rungs == rung)
         gradients[here] = np.sqrt(variance[here] / (2**rung * noise.step[here]))
-    return np.where(near, STEEPER * shift * gradients, 0.0)
+    return np.where(near, shift * gradients, 0.0)
