@@ -53,10 +53,9 @@ class CurvatureFlow:
     @cached_property
     def metric(self) -> Metric:
         """The mesh as kernels see it."""
-        t = self.mesh.topology
-        return Metric(
-            t.faces, self.mesh.edge_lengths, self.mesh.corner_angles, t.corner_offsets, t.vertex_corners, t.partners
-        )
+        mesh, t = self.mesh, self.mesh.topology
+        sides = mesh.edge_lengths, mesh.corner_angles, mesh.face_areas
+        return Metric(t.faces, *sides, t.corner_offsets, t.vertex_corners, t.partners)
 
     @cached_property
     def spacing(self) -> Floats:

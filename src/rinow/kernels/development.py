@@ -5,9 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rinow.kernels._jit import kernel
+from rinow.kernels._jit import inlined, kernel
 from rinow.kernels.adjacency import corner_across, next_corner, previous_corner
-from rinow.kernels.triangles import triangle_area
 
 HUB = 100
 """Developments grow through no vertex with more corners than this, such as the centre of a fan: it is near too many."""
@@ -18,11 +17,12 @@ GROWTH = 0.75
 
 
 class Metric(NamedTuple):
-    """Faces (n, 3), their side lengths and angles, compressed rows of corners, and partners of half-edges."""
+    """Faces (n, 3), their side lengths, angles and areas, compressed rows of corners, and partners of half-edges."""
 
     faces: np.ndarray
     lengths: np.ndarray
     angles: np.ndarray
+    areas: np.ndarray
     offsets: np.ndarray
     corners: np.ndarray
     partners: np.ndarray
@@ -86,7 +86,7 @@ def lay_out_fan(v, stretch, metric, members, slots, points):
     return n
 
 
-@kernel
+@inlined
 def beyond(c, points, p, q, n, metric, members, slots):
     """Place of the vertex of corner c beyond the opposite edge, whose ends are members p and q.
 
@@ -109,7 +109,7 @@ def beyond(c, points, p, q, n, metric, members, slots):
         if is_member(d, n, members, slots):
             s = slots[d]
             x, y = points[s, 0] - mx, points[s, 1] - my
-    height = 2.0 * triangle_area(l, to_p, to_q) / l
+    height = 2.0 * metric.areas[f] / l
     if ex * y - ey * x > 0.0:
         height = -height
     along = 0.5 * (to_p - to_q) * (to_p + to_q) / l
@@ -142,27 +142,27 @@ def develop(v, radius, stretch, metric, members, slots, points, counts):
     return n
 
 
-@kernel
+@inlined
 def place_across(c, m, end, n, metric, members, slots, points, counts):
     """Add a place for the vertex of the face of corner c that is no member yet, if the two others are; see `develop`.
 
     A face on two members of the last wave counts twice.
     """
-    for side in range(2):
-        a, b = next_corner(c), previous_corner(c)
-        if side == 1:
-            a, b = b, a
-        p, q = metric.faces[a // 3, a % 3], metric.faces[b // 3, b % 3]
-        if not is_member(p, end, members, slots) or is_member(q, end, members, slots):
-            continue
-        x, y = beyond(b, points, m, slots[p], end, metric, members, slots)
-        if is_member(q, n, members, slots):
-            s = slots[q]
-            points[s, 0] += x
-            points[s, 1] += y
-            counts[s] += 1
-        elif n < members.shape[0]:
-            members[n], slots[q], counts[n] = q, n, 1
-            points[n, 0], points[n, 1] = x, y
-            n += 1
+    a, b = next_corner(c), previous_corner(c)
+    p, q = metric.faces[a // 3, a % 3], metric.faces[b // 3, b % 3]
+    is_placed = is_member(p, end, members, slots)
+    if is_placed == is_member(q, end, members, slots):
+        return n
+    if not is_placed:
+        b, p, q = a, q, p
+    x, y = beyond(b, points, m, slots[p], end, metric, members, slots)
+    if is_member(q, n, members, slots):
+        s = slots[q]
+        points[s, 0] += x
+        points[s, 1] += y
+        counts[s] += 1
+    elif n < members.shape[0]:
+        members[n], slots[q], counts[n] = q, n, 1
+        points[n, 0], points[n, 1] = x, y
+        n += 1
     return n
