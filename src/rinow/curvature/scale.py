@@ -86,7 +86,7 @@ class Samples(NamedTuple):
     """What the sample tells.
 
     For each vertex the samples near it (compressed rows); for each sample the vertices it speaks for (compressed rows),
-    its logarithmic risks of H over the plane, and of both over the torus and over its plane, for each radius and order,
+    its logarithmic risks of H over the plane, and of K over the torus and over its plane, for each radius and order,
     its choice, noise and spacing.
     """
 
@@ -103,11 +103,7 @@ class Samples(NamedTuple):
 
 
 def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, sizes: Ints | None = None) -> Samples:
-    """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices.
-
-    A sample that chooses for the centres near it does so by the errors of K and H, as they do by themselves; where it
-    only says where they look, by those of K.
-    """
+    """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices."""
     from scipy.sparse import csr_array
 
     n = len(sheet.vertices)
@@ -121,10 +117,10 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), choice, tasks)
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
-    n_radii, level, errors_of = len(ladder.reaches), frames.copy(), GAUSSIAN if is_refined else BOTH
-    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, n_radii, errors_of, links, tasks)
+    n_radii, level = len(ladder.reaches), frames.copy()
+    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, n_radii, GAUSSIAN, links, tasks)
     level[:, 9:] = 0.0
-    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, n_radii, errors_of, links, tasks)
+    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, n_radii, GAUSSIAN, links, tasks)
     choice = levelled(frames, choice, over_plane)
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
@@ -219,7 +215,7 @@ def select(
     sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, window: tuple[Ints, Ints, Ints, Floats],
     links: tuple[Ints, Ints], passes: int, tasks: Tasks,
 ) -> Choice:  # fmt: skip
-    """The least risk of each centre among the radii low..high and orders up to `top`, for known noise."""
+    """The least risk of K and H of each centre among the radii low..high and orders up to `top`, for known noise."""
     low, high, top, noise = window
     spacing = sheet.spacing[centres]
     rows = np.zeros(len(centres) + 1, np.int64)
