@@ -96,6 +96,15 @@ def test_smooth_surfaces_have_no_features_even_with_noise(name, noise):
     assert len(found.crease_edges) == len(found.corners) == len(found.cone_points) == 0
 
 
+@pytest.mark.parametrize("seed", [1, 3, 5, 7])
+def test_spikes_bend_to_and_fro_and_are_no_creases(seed):
+    mesh = rinow.TriangleMesh(*shapes.open_patch(900)[:2])
+    rng, n = np.random.default_rng(seed), mesh.n_vertices
+    heights = (rng.random(n) < 0.03) * rng.choice([-1, 1], n) * 0.5 * mesh.mean_edge_length
+    spiky = rinow.TriangleMesh(mesh.vertices + mesh.vertex_normals * heights[:, None], mesh.faces)
+    assert not len(rinow.singular_features(spiky).crease_edges)
+
+
 @pytest.mark.parametrize("name", SOLIDS)
 def test_crease_angles_of_clean_solids(name):
     part = SOLIDS[name](0.12)

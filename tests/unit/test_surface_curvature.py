@@ -315,7 +315,7 @@ def test_any_unit_of_length(method, scale):
     c, d = curvature(shape, method=method), curvature(shape._replace(vertices=shape.vertices * scale), method=method)
     np.testing.assert_allclose(d.gaussian * scale * scale, c.gaussian, rtol=1e-10)
     np.testing.assert_allclose(d.mean * scale, c.mean, rtol=1e-10)
-    np.testing.assert_allclose(d.radius / scale, c.radius, rtol=1e-12)
+    np.testing.assert_allclose(d.radius / scale, c.radius, rtol=1e-7)  # weighted by risks, which have single precision
     np.testing.assert_allclose(d.shape_index, c.shape_index, rtol=1e-6)
     np.testing.assert_allclose(d.spread * scale * scale, c.spread, rtol=1e-6)
 

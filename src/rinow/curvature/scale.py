@@ -88,8 +88,8 @@ class Samples(NamedTuple):
     """What the sample tells.
 
     The vertices in the order in which they become centres; for each vertex the samples near it (compressed rows); for
-    each sample the vertices it speaks for (compressed rows), its logarithmic risks of H over the plane, and of both over
-    the torus and over its plane, for each radius and order, its choice, noise and spacing.
+    each sample the vertices it speaks for (compressed rows), its logarithmic risks of H over the plane, of K over the
+    torus, and of both over its plane, for each radius and order, its choice, noise and spacing.
     """
 
     turns: Ints
@@ -108,9 +108,8 @@ class Samples(NamedTuple):
 def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, sizes: Ints | None = None) -> Samples:
     """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices.
 
-    A sample that chooses for the centres near it does so by the errors of K and H, as they do by themselves; where it
-    only says where they look, by those of K.  For planes both are asked: where a surface is developable, as a cylinder
-    is, K is 0 over a plane in the largest ball, however wrong H is.
+    Planes are asked for the errors of K and H: where a surface is developable, as a cylinder is, K is 0 over a plane in
+    the largest ball, however wrong H is.
     """
     from scipy.sparse import csr_array
 
@@ -129,8 +128,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     frames = ladder.frames(sheet, centres, flat, choice, tasks)
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
-    errors_of = GAUSSIAN if is_refined else BOTH
-    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, frames, last, errors_of, links, tasks)
+    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, frames, last, GAUSSIAN, links, tasks)
     level, last = frames.copy(), np.minimum(choice.radius + LARGER, n_radii - 1)
     level[:, 9:] = 0.0
     level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, frames, last, BOTH, links, tasks)
@@ -233,7 +231,7 @@ def select(
     sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, window: tuple[Ints, Ints, Ints, Floats],
     links: tuple[Ints, Ints], passes: int, tasks: Tasks,
 ) -> Choice:  # fmt: skip
-    """The least risk of each centre among the radii low..high and orders up to `top`, for known noise."""
+    """The least risk of K and H of each centre among the radii low..high and orders up to `top`, for known noise."""
     low, high, top, noise = window
     spacing = sheet.spacing[centres]
     rows = np.zeros(len(centres) + 1, np.int64)

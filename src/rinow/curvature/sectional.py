@@ -39,8 +39,11 @@ QUARTIC = 3
 """Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
 PASSES = 2
 """Averages of squared differences over the centres around."""
-EDGE_CALIBRATION = 1.8
+EDGE_CALIBRATION = 2.0
 """The same at a boundary, where patches of any quality choose their order and radius by themselves."""
+OF_GAUSSIAN = 0.8
+"""Squared error of K over that of K and H together if k1 and k2 err alike: k2 dk1 + k1 dk2 has four times the variance
+of the curvedness times (dk1 + dk2)/2."""
 APART = 3.0
 """Squared error over the variance between the patches of a vertex: they share most of their points, so that they err
 together more than they differ."""
@@ -231,7 +234,7 @@ def _look(
         frames[own] = own_frames
         del own_frames
         found = select(sheet, ladder, few, frames[own], (low, high, top, noise), links, PASSES, tasks)
-        choice.radius[own], choice.order[own], choice.risk[own] = found
+        choice.radius[own], choice.order[own], choice.risk[own] = found.radius, found.order, OF_GAUSSIAN * found.risk
         has_fit = found.radius >= 0
         low = np.where(has_fit, np.maximum(low, found.radius - NARROW), low)
         high = np.where(has_fit, np.minimum(high, found.radius + NARROW), high)
