@@ -26,9 +26,9 @@ SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
 """Radius a sample covers, in spacings, for surfaces up to so many vertices: with and without refinement."""
 RESOLVED = 0.1
 """Curvature, over the inverse spacing, up to which a mesh resolves its surface: large balls miss nothing there."""
-LEVEL, LARGER = 2.0, 4
-"""Factor by which the risk over a plane must be less than that over the torus for the plane to be taken, and by how
-many radii more it is looked for."""
+LEVEL, LARGER, BENT = 2.0, 4, 0.3
+"""Factor by which the risk over a plane must be less than that over the torus for the plane to be taken, by how many
+radii more it is looked for, and how much errors of H count there beside those of K: on folds K shall decide."""
 ROUNDING = 1e-15
 """Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
@@ -108,7 +108,7 @@ class Samples(NamedTuple):
 def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, sizes: Ints | None = None) -> Samples:
     """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices.
 
-    Planes are asked for the errors of K and H: where a surface is developable, as a cylinder is, K is 0 over a plane in
+    Planes are asked for the errors of K and of H: where a surface is developable, as a cylinder is, K is 0 over a plane in
     the largest ball, however wrong H is.
     """
     from scipy.sparse import csr_array
@@ -131,7 +131,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, frames, last, GAUSSIAN, links, tasks)
     level, last = frames.copy(), np.minimum(choice.radius + LARGER, n_radii - 1)
     level[:, 9:] = 0.0
-    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, frames, last, BOTH, links, tasks)
+    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, BENT * frames, last, BOTH, links, tasks)
     choice = levelled(frames, choice, over_plane)
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
