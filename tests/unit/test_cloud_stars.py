@@ -6,7 +6,7 @@ import pytest
 import shapes
 from naive import cloud_stars as naive
 from rinow.curvature.cloud_facing import facing
-from rinow.curvature.cloud_layers import nearest_points
+from rinow.curvature.cloud_layers import cleaned, nearest_points
 from rinow.curvature.cloud_signs import outward
 from rinow.curvature.cloud_stars import Stars, agreement, first_stars, links_of
 
@@ -83,6 +83,20 @@ def test_no_neighbours_across_a_wall(shape, gap):
     assert (ahead == near)[inside][~was_across[inside]].mean() > 0.99
     np.testing.assert_array_equal(ahead[ahead != near], np.broadcast_to(own, near.shape)[ahead != near])
     assert agreed[inside].mean() > 0.98
+
+
+def test_no_neighbours_across_between_spheres_one_spacing_apart():
+    # Here the first planes see both, stars agree on a quarter, and the sheets are told by following them outwards.
+    n = 1500
+    r = 1 - np.sqrt(4 * np.pi / n)
+    turn = np.linalg.qr(np.random.default_rng(9).normal(size=(3, 3)))[0]
+    inner = r * shapes.irregular_sphere(int(n * r * r)).vertices @ turn
+    points = np.concatenate([shapes.irregular_sphere(n).vertices, inner])
+    is_outer = np.arange(len(points)) < n
+    assert facing(points, nearest_points(points).indices)[1].mean() < 0.5
+    near, is_stray, is_lost = cleaned(points)
+    assert not is_stray.any() and not is_lost.any()
+    assert (is_outer[near.indices] == is_outer[:, None]).all()
 
 
 def test_sheets_nearer_than_a_spacing_are_not_told():
