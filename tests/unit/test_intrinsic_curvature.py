@@ -10,6 +10,7 @@ from metric_shapes import flat_torus, hyperbolic_patch
 from naive import development as naive
 from rinow import IntrinsicMesh, InvalidInputError, TriangleMesh, VertexStatus, surface_curvature
 from rinow.curvature import intrinsic
+from rinow.curvature import waves as waves_module
 from rinow.curvature.angle_defect import longest_edges
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.intrinsic import CALIBRATION, intrinsic_curvature
@@ -142,6 +143,45 @@ def test_no_window_reaches_further_than_its_steps_and_next_to_nothing_beyond_its
     away = np.linalg.norm(shape.vertices - shape.vertices[0], axis=1) / np.sqrt(2 / (1 - LEAST) * flow.step_variances)
     assert kernel[away > 1.5 * len(c)].max() < 1e-3 * kernel.max()
     assert kernel[away > 2.8 * len(c)].max(initial=0.0) < 1e-13 * kernel.max()
+
+
+def long_grid(n, stretch):
+    """A paraboloid over n by n points in rows that are so many times further apart than the points in them."""
+    i = np.arange(n * n).reshape(n, n)
+    a, b, c, d = (part.ravel() for part in (i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]))
+    x, y = (np.indices((n, n)).reshape(2, -1) - (n - 1) / 2) * np.array([[1.0], [1 / stretch]]) / n
+    faces = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    return TriangleMesh(np.column_stack([x, y, (x * x + y * y) / 2]), faces)
+
+
+def test_waves_do_not_grow_where_three_values_in_a_row_are_averaged():
+    flow = CurvatureFlow(long_grid(24, 50))
+    start = np.where(flow.has_data, (-1.0) ** np.arange(24 * 24), 0.0)  # alternating along the rows
+    assert flow.step(start)[flow.has_data].min() < -0.25
+    for m in (16, 128):
+        assert np.nanmax(np.abs(Waves(flow, start).sums([window(m, 3)])[0])) < 1
+
+
+def test_waves_that_grow_are_no_candidates_or_have_the_spread_of_it(monkeypatch):
+    flow = CurvatureFlow(TriangleMesh(TORUS.vertices, TORUS.faces))
+    exact = np.abs(TORUS.gaussian).max()
+    monkeypatch.setattr(waves_module, "LEAST", 0.1)  # some of what S does lies beyond
+    assert np.abs(Waves(flow, flow.defect_densities).sums([window(64, 3)])[0]).max() > 1e5 * exact
+    found = curvature(TORUS)
+    assert np.mean(np.abs(found.gaussian - TORUS.gaussian) < 2 * found.spread) > 0.9
+    assert np.abs(found.gaussian).max() < 5 * exact
+
+
+def test_no_squared_bias_is_so_small_that_two_spreads_do_not_hold_the_difference_from_the_reference():
+    flow = CurvatureFlow(TriangleMesh(TORUS.vertices, TORUS.faces))
+    spike = np.zeros(len(TORUS.vertices))
+    spike[5] = 1e9
+    squared = intrinsic._squared_bias(1, spike, flow, np.ones(len(spike)))
+    assert 2 * CALIBRATION * np.sqrt(squared[5]) >= 1e9 * (1 - 1e-12)
+
+
+def test_every_boundary_vertex_beside_the_interior_has_a_value():
+    assert np.isfinite(intrinsic_curvature(long_grid(24, 5)).gaussian).all()
 
 
 # ------------------------------------------------------------------ scale and noise

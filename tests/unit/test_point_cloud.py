@@ -200,20 +200,49 @@ def test_signs_of_two_parts_and_of_a_noisy_torus():
     assert (above.mean[:n][outer] > 0).all()
 
 
-@pytest.mark.parametrize("gap", [1.5, 2.0, 3.0])
-@pytest.mark.parametrize("noise", [0.0, 0.05])
-def test_two_close_spheres_are_two(gap, noise):
+def two_spheres(gap, noise=0.0):
+    """Points of the unit sphere and of one so many spacings inside it, with the exact curvature."""
     outer, rng = shapes.irregular_sphere(1500), np.random.default_rng(9)
     h = np.sqrt(4 * np.pi / 1500)
     r = 1 - gap * h
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     points = np.concatenate([outer.vertices, r * shapes.irregular_sphere(int(1500 * r * r)).vertices @ turn])
     exact = np.where(np.arange(len(points)) < len(outer.vertices), 1.0, r**-2)
-    cloud = rinow.point_cloud_curvature(points + noise * h * rng.normal(size=points.shape))
+    return points + noise * h * rng.normal(size=points.shape), exact
+
+
+@pytest.mark.parametrize("gap", [1.5, 2.0, 3.0])
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_two_close_spheres_are_two(gap, noise):
+    points, exact = two_spheres(gap, noise)
+    cloud = rinow.point_cloud_curvature(points)
     has_value = np.isfinite(cloud.gaussian)
     # Taken for one sheet, they were noise of one spacing: errors of 0.1 to 40 at points with status OK.
     assert has_value.mean() > 0.95
     assert np.abs(cloud.gaussian / exact - 1)[has_value].max() < 0.1
+
+
+@pytest.mark.parametrize(("gap", "least"), [(0.7, 0.4), (0.85, 0.5), (1.0, 0.95)])
+def test_spheres_less_than_a_spacing_apart_are_right_or_unresolved(gap, least):
+    points, exact = two_spheres(gap, 0.02)
+    cloud = rinow.point_cloud_curvature(points)
+    has_value = np.isfinite(cloud.gaussian)
+    assert has_value.mean() > least
+    assert np.abs(cloud.gaussian / exact - 1)[has_value].max() < 0.1
+
+
+def test_order_and_rotation_of_two_close_spheres():
+    points, _ = two_spheres(1.0)
+    cloud, rng = rinow.point_cloud_curvature(points), np.random.default_rng(6)
+    order = rng.permutation(len(points))
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    other = rinow.point_cloud_curvature(points[order])
+    np.testing.assert_array_equal(other.gaussian, cloud.gaussian[order])
+    turned = rinow.point_cloud_curvature(points @ turn + [3, 1, 2])
+    np.testing.assert_array_equal(turned.status, cloud.status)
+    np.testing.assert_allclose(turned.gaussian, cloud.gaussian, rtol=1e-9)  # fits to spheres, which are exact
+    # The signs are those of each sphere, whatever lies across.
+    assert (cloud.mean > 0).all() and (turned.mean > 0).all()
 
 
 @pytest.mark.parametrize(("gap", "least"), [(1.2, 0.4), (1.5, 0.75), (2.0, 0.95)])

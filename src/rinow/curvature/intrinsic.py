@@ -38,6 +38,9 @@ IDLE = 2
 """Scales in a row without a smaller error at any vertex after which larger ones are left out."""
 FLOOR = 0.1
 """Share of the variance of a comparison that its square cannot be told from: least squared bias."""
+WITHIN = 3.0
+"""Differences of a value from its reference over the root of its squared bias, at most, so that two spreads hold them.
+S is not symmetric, and waves may grow somewhere: they do so in these differences as well."""
 LARGE, FAR, PATCH = 20_000, 20, 200
 """Vertices from which their order matters, the share of all of them that numbers of neighbours then may be apart, and
 vertices of a patch."""
@@ -145,6 +148,7 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
             idle = 0 if any(improved) else idle + 1
         if idle == IDLE and here is None:
             break
+    del waves  # with those it keeps: what follows takes the most memory
     best.gaussian[_is_flat(flow) & np.isfinite(best.gaussian)] = 0.0
     _shrink(best, flow)
     scale = best.radius**2 / SUPPORT
@@ -187,8 +191,8 @@ def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, waves: Waves, t
     for i, c in enumerate(windows):
         values = sums[i] if m else np.where(flow.has_data, sums[i], np.nan)
         variance = _product(tau2, noise.variance(c))
-        variance[~np.isfinite(values)] = np.nan
         variance = np.fmax(variance, flow.means(variance, VARIANCE_PASSES))
+        variance[~np.isfinite(values)] = np.nan
         bias = np.zeros(len(radius))
         if m:
             bias = _squared_bias(m, sums[len(windows) + i], flow, _product(tau2, noise.variance(differences[i])))
@@ -199,7 +203,8 @@ def _squared_bias(m: int, difference: Floats, flow: CurvatureFlow, seen: Floats)
     """What a candidate differs by from its reference, squared, less the noise of that."""
     excess = difference**2 - seen
     seen = np.fmax(seen, flow.means(seen, VARIANCE_PASSES))
-    return np.fmax(flow.means(excess, int(np.clip(m // 3, *PASSES))), FLOOR * seen)
+    least = np.fmax(FLOOR * seen, (difference / WITHIN) ** 2)
+    return np.fmax(flow.means(excess, int(np.clip(m // 3, *PASSES))), least)
 
 
 def _product(noise: Floats, variance: Floats) -> Floats:

@@ -20,12 +20,13 @@ REFERENCE = {1: 1, 2: 1, 3: 2} | {m: LADDER[LADDER.index(m) - 2] for m in LADDER
 """The smaller scale that the bias is seen against: half of m."""
 ORDER = 3
 """Highest order."""
-REACH = (2.2, 2.85, 3.5, 4.1)
+REACH = (2.44, 3.16, 3.88, 4.54)
 """Waves of a window of the orders 1 to 4 over the root of its scale."""
 POWER = 3.5
 """Of the window (1 - x²)^3.5, the ball with the weights (1 - r²)³ seen from the side."""
-LEAST = -0.1
-"""Eigenvalues of S lie between this and 1."""
+LEAST = -0.35
+"""Eigenvalues of S lie between this and 1: the mean of three equal values in a row takes -1/3 of alternating ones, as
+on grids of long triangles.  Waves grow with what lies beyond, to 1e16 there if this is -0.1."""
 KEPT = 8
 """Waves that are kept for the next windows; the others are computed anew, since each takes the memory of a result."""
 
