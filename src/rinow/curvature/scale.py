@@ -108,8 +108,8 @@ class Samples(NamedTuple):
 def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, sizes: Ints | None = None) -> Samples:
     """Examine all balls and orders at a sample of the vertices, each in a component of so many vertices.
 
-    Planes are asked for the errors of K and of H: where a surface is developable, as a cylinder is, K is 0 over a plane in
-    the largest ball, however wrong H is.
+    Planes are asked for the errors of K and of H: where a surface is developable, as a cylinder is, K is 0 over a plane
+    in the largest ball, however wrong H is.
     """
     from scipy.sparse import csr_array
 
