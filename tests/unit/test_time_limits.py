@@ -1,6 +1,7 @@
 """Steps look at the clock after a bounded amount of work: counted, not timed."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,12 +9,15 @@ from scipy.spatial.distance import pdist, squareform
 
 import rinow
 from clocks import Looks
+from rinow.comparison import clock as clock_module
 from rinow.comparison import engine as engine_module
-from rinow.comparison import large_work, lipschitz
+from rinow.comparison import large_work, lipschitz, steps
 from rinow.comparison.bounds import matching_bound
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, Engine, Search
+from rinow.comparison.interval import Interval
 from rinow.comparison.large_work import Work
+from rinow.comparison.satisfiability import Satisfiability
 from rinow.comparison.surfaces import geodesics_within
 from rinow.comparison.symmetry import isometries
 from rinow.errors import InvalidInputError
@@ -149,3 +153,37 @@ def test_geodesic_distances_stop_at_the_second_look(monkeypatch):
 def test_few_geodesic_distances_need_no_time():
     mesh = icosphere(1)
     assert len(geodesics_within(rinow.TriangleMesh(mesh.vertices, mesh.faces), Clock(0.0))) == 42
+
+
+def test_solver_goes_on_while_it_finds_relations(monkeypatch):
+    """Each relation is worth the share of what is left, anew: here each takes a fifth of the whole time."""
+    X, Y = spaces(6, 6)
+    engine, now, shares = Engine(X, Y, BIJECTION), [0.0], []
+    rng = np.random.default_rng(3)
+    maps = [np.stack([np.arange(6), rng.permutation(6)], axis=1) for _ in range(5)]
+    maps.sort(key=engine.worst_of, reverse=True)
+
+    class Solver(Satisfiability):
+        def __init__(self, *_, **__):
+            self.ready, self._left = True, iter(maps[1:])
+
+        def __exit__(self, *_):
+            """Nothing to delete."""
+
+        def lower_level(self, *_):
+            """The maps are given."""
+
+        def run(self, clock):
+            shares.append(clock.seconds)
+            now[0] += 20.0
+            return False, None if clock.over else next(self._left)
+
+    monkeypatch.setattr(clock_module, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(steps, "Satisfiability", Solver)
+    monkeypatch.setattr(steps, "solver_installed", lambda: True)
+    monkeypatch.setattr(steps, "polish", lambda *_: None)
+    interval = Interval(maps[0], engine.worst_of(maps[0]), lower=1.0)
+    everything = np.ones((6, 6), np.bool_)
+    steps.satisfiability(engine, interval, Clock(100.0), everything, (isometries(X, Clock(1.0)),) * 2)
+    assert shares == pytest.approx([40.0, 32.0, 24.0, 16.0])
+    assert interval.upper == engine.worst_of(maps[3])

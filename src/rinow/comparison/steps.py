@@ -42,7 +42,7 @@ CLIMB = 0.7
 """Share of the time for levels from below, where they are few."""
 
 LEARNING = 0.4
-"""Share of the time for a clause-learning solver."""
+"""Share of the time for a clause-learning solver; the share of what is left, anew, with each relation that it finds."""
 
 SYMMETRY = 0.1
 """Share of the time for finding isometries of both spaces."""
@@ -196,7 +196,10 @@ def branch_and_bound(
 
 
 def satisfiability(engine: Engine, interval: Interval, clock: Clock, possible: Flags, symmetries: Symmetries) -> None:
-    """Let a clause-learning solver search below the upper bound until it is proved or its share of the time is over."""
+    """Let a clause-learning solver search below the upper bound until it is proved or its share of the time is over.
+
+    What it learned would be lost with it: while it finds better relations it goes on.
+    """
     level, solving = interval.wanted, clock.part(LEARNING * clock.left)
     left = engine.consistent(level, solving, possible)
     if left is None:
@@ -212,6 +215,7 @@ def satisfiability(engine: Engine, interval: Interval, clock: Clock, possible: F
             if refuted or pairs is None:
                 return
             interval.offer(pairs, engine.worst_of(pairs))
+            solving = clock.part(LEARNING * clock.left)
             polish(engine, interval, solving)
             solver.lower_level(interval.wanted, solving)
 
