@@ -9,12 +9,12 @@ Graphs
 Surfaces
     `surface` takes a method and gives a result with a status (`status`, `notes`); each method makes an `estimate`.
 
-    - Edge lengths alone: `angle_defect`, `wald`, `geodesic_stars`; `intrinsic` with `flow`, `powers`, `arcs`,
+    - Edge lengths alone: `angle_defect`, `wald`, `geodesic_stars`; `intrinsic` with `flow`, `waves`, `arcs`,
       `length_noise`, `unseen`.
     - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale`, `patch_tasks`, `ends`.
     - Both: `lifted`; `auto` with `unresolved`.
     - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`, `flat`, `strays`.
 Points without a mesh
-    `point_cloud`, over `cloud_layers`, `cloud_sheet`, `cloud_faces`, `cloud_holes`, `cloud_fit`; `clouds` as metric
-    spaces.
+    `point_cloud`, over `cloud_facing` with `cloud_signs` and `cloud_stars`, `cloud_layers`, `cloud_sheet`, `cloud_faces`,
+    `cloud_holes`, `cloud_fit`; `clouds` as metric spaces.
 """
