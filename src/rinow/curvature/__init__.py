@@ -15,6 +15,6 @@ Surfaces
     - Both: `lifted`; `auto` with `unresolved`.
     - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`, `flat`, `strays`.
 Points without a mesh
-    `point_cloud`, over `cloud_facing` with `cloud_signs` and `cloud_stars`, `cloud_layers`, `cloud_sheet`, `cloud_faces`,
-    `cloud_holes`, `cloud_fit`; `clouds` as metric spaces.
+    `point_cloud`, over `cloud_facing` with `cloud_signs` and `cloud_stars`, `cloud_layers`, `cloud_sheet`,
+    `cloud_faces`, `cloud_holes`, `cloud_fit`; `clouds` as metric spaces.
 """
