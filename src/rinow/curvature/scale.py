@@ -26,9 +26,9 @@ SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
 """Radius a sample covers, in spacings, for surfaces up to so many vertices: with and without refinement."""
 RESOLVED = 0.1
 """Curvature, over the inverse spacing, up to which a mesh resolves its surface: large balls miss nothing there."""
-LEVEL, LARGER, BENT = 2.0, 4, 0.3
-"""Factor by which the risk over a plane must be less than that over the torus for the plane to be taken, by how many
-radii more it is looked for, and how much errors of H count there beside those of K: on folds K shall decide."""
+LEVEL, BENT = 2.0, 0.3
+"""Factor by which the risk over a plane must be less than that over the torus for the plane to be taken, and how much
+errors of H count there beside those of K: on folds K shall decide."""
 ROUNDING = 1e-15
 """Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
@@ -120,8 +120,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     centres = cover(sheet, order, np.broadcast_to(reach, n))
     m, radius = len(centres), np.broadcast_to(reach, n)[centres]
     links = members_of_discs(sheet, centres, centres, AROUND * radius)
-    n_radii = len(ladder.reaches)
-    last = np.full(m, n_radii - 1, np.int32)
+    last = np.full(m, len(ladder.reaches) - 1, np.int32)
     pilot = np.minimum(last, PILOT_RADII - 1)
     flat = flat_frames(sheet, centres)
     plane_logs, choice, _ = _examine(sheet, ladder, centres, flat, flat, pilot, MEAN, links, tasks)
@@ -129,7 +128,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
     torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, frames, last, GAUSSIAN, links, tasks)
-    level, last = frames.copy(), np.minimum(choice.radius + LARGER, n_radii - 1)
+    level = frames.copy()
     level[:, 9:] = 0.0
     level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, BENT * frames, last, BOTH, links, tasks)
     choice = levelled(frames, choice, over_plane)
