@@ -40,7 +40,7 @@ QUARTIC = 3
 PASSES = 2
 """Averages of squared differences over the centres around."""
 EDGE_CALIBRATION = 2.0
-"""The same at a boundary, where patches of any quality choose their order and radius by themselves."""
+"""`Quality.calibration` at a boundary, where patches of any quality choose their order and radius by themselves."""
 OF_GAUSSIAN = 0.8
 """Squared error of K over that of K and H together if k1 and k2 err alike: k2 dk1 + k1 dk2 has four times the variance
 of the curvedness times (dk1 + dk2)/2."""
