@@ -189,7 +189,7 @@ def is_euclidean_simplex(distances: ArrayLike) -> Flags:
     return ((_least_height(H) > _flatness(D, length)) & (length > 0)).reshape(shape)[()]
 
 
-def is_cospherical(distances: ArrayLike, *, rtol: float = 1e-9) -> Flags:
+def is_cospherical(distances: ArrayLike, rtol: float = 1e-9) -> Flags:
     r"""Whether n points of a Euclidean space of dimension n - 2 lie on a sphere or a hyperplane.
 
     Parameters

@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class SpaceForm:
-    r"""The simply connected surface :math:`S_k` of constant curvature k.
+    r"""The plane, a sphere or a hyperbolic plane: the surface S_k of constant curvature k.
 
     It is the sphere of radius :math:`1/\sqrt{k}` for k > 0, the plane for k = 0 and the hyperbolic plane for k < 0.
     All methods work on arrays of any shape, broadcast against each other, and pass smoothly through k = 0.

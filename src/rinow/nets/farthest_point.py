@@ -163,12 +163,12 @@ def _grow(
             return np.array(indices), np.array(radii), distances, labels
 
 
-def is_epsilon_net(space_or_mesh: Any, indices: ArrayLike, epsilon: float) -> bool:
+def is_epsilon_net(space: Any, indices: ArrayLike, epsilon: float) -> bool:
     r"""Whether every point of a space, or vertex of a surface, is within a distance of some given points.
 
     Parameters
     ----------
-    space_or_mesh : MetricSpace, (n, n) array_like of float, or mesh
+    space : MetricSpace, (n, n) array_like of float, or mesh
         The space, or a surface whose vertices are its points, with exact geodesic distances.
     indices : (k,) array_like of int
         At least one point.
@@ -198,10 +198,10 @@ def is_epsilon_net(space_or_mesh: Any, indices: ArrayLike, epsilon: float) -> bo
     """
     if not as_number(epsilon, "epsilon") >= 0.0:
         raise InvalidInputError(f"epsilon = {epsilon} is not a radius; give a number that is not negative.")
-    if is_mesh_like(space_or_mesh):
-        mesh = as_mesh(space_or_mesh)
+    if is_mesh_like(space):
+        mesh = as_mesh(space)
         return covers(mesh, _as_chosen(indices, mesh.n_vertices), epsilon * (1.0 + tolerances.COMPARISON))
-    D = as_metric_space(space_or_mesh).distances
+    D = as_metric_space(space).distances
     return bool((D[:, _as_chosen(indices, len(D))].min(axis=1) <= epsilon).all())
 
 
