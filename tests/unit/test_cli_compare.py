@@ -152,7 +152,7 @@ def test_net(folder, capfd):
 
 BAD = [
     (["compare", "a.ply", "missing.ply"], "missing.ply: there is no such file"),
-    (["compare", "a.ply", "p.csv"], "p.csv has no suffix of a known mesh format"),
+    (["compare", "a.ply", "p.csv"], "p.csv has no faces; add --points if its rows are points"),
     (["compare", "p.csv", "text.csv", "--points"], "text.csv: line 2"),
     (["compare", "p.csv", "uneven.csv", "--points"], "uneven.csv: line 3 has 3 numbers, but the first row 2."),
     (["compare", "p.csv", "empty.csv", "--points"], "empty.csv: the file is empty"),

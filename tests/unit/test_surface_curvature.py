@@ -368,7 +368,8 @@ def test_notes_name_the_faults():
     seam = surface_curvature((cut, np.where(half[:, None], F + len(V), F)), method="angle_defect")
     n_seam = np.intersect1d(F[half], F[~half]).size
     assert seam.notes == (
-        f"{2 * n_seam} boundary vertices lie on others: these seams are open; weld them to close them.",
+        f"{2 * n_seam} boundary vertices lie on others: these seams are open; `TriangleMesh.welded`, or --weld on "
+        "the command line, closes them.",
     )
 
 

@@ -55,9 +55,15 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
+class _Stdout(Console):
+    def on_broken_pipe(self) -> None:
+        """Leave it to `main`: a reader that has seen enough is no error, as rich would have it."""
+        raise BrokenPipeError
+
+
 def console() -> Console:
     """Stdout; in a pipe wide enough that no cell is cut."""
-    return Console() if sys.stdout.isatty() else Console(width=120)
+    return _Stdout() if sys.stdout.isatty() else _Stdout(width=120)
 
 
 def print_counts(title: str, counts: Mapping[str, Any]) -> None:
@@ -79,7 +85,7 @@ def print_study(title: str, study: CurvatureStudy) -> None:
     for p in next(iter(percentiles.values())):
         table.add_column({"0": "least", "50": "median", "100": "greatest"}.get(p, f"{p} %"), justify="right")
     for name, levels in percentiles.items():
-        table.add_row(name, field_unit(name, study.unit), *(f"{v:.4g}" for v in levels.values()))
+        table.add_row(name, field_unit(name, study.unit), *(f"{v:z.4g}" for v in levels.values()))
     out = console()
     out.print(table)
     status = ", ".join(f"{n:,} {name}" for name, n in study.status_counts().items())

@@ -13,6 +13,7 @@ from rinow.comparison.hausdorff import HausdorffDistance
 from rinow.comparison.surfaces import check_connected
 from rinow.errors import FileFormatError, InvalidInputError, naming
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.point_files import check_has_faces
 from rinow.io.tables import check_table, read_distances, read_points, write_columns
 from rinow.mesh import TriangleMesh
 from rinow.metric_space import MetricSpace
@@ -105,6 +106,7 @@ def _read(path: Path, kind: Kind, metric: Metric, rtol: float) -> Any:
         return read_points(path)
     if kind == "distances":
         return MetricSpace(read_distances(path), rtol=rtol)
+    check_has_faces(path, "add --points if its rows are points, --distances if it is a matrix of distances")
     mesh = read_mesh(path)
     if metric != "hausdorff":
         check_connected(mesh, every_vertex=metric == "lipschitz")
@@ -161,7 +163,8 @@ def _print(record: dict[str, Any], notes: list[str]) -> None:
         proof = f"attained between {_place(record['witness_a'])} in a and {_place(record['witness_b'])} in b"
     else:
         checked = {None: "", True: ", its proof checked", False: ", its proof not checked"}[record["proof_checked"]]
-        proof = f"proved by {record['lower_bound_by']}{checked}; {len(record['pairs'])} pairs attain the upper one"
+        pairs = f"; {len(record['pairs'])} pairs attain the upper one" if record["pairs"] else ""
+        proof = f"proved by {record['lower_bound_by']}{checked}{pairs}"
     unit = "" if record["unit"] == "1" else " " + record["unit"]
     print_counts(f"{record['metric']} distance of {record['a']} and {record['b']}, unit {record['unit']}", rows)
     interval = f"{record['lower']:.9g} <= distance <= {record['upper']:.9g}{unit}"

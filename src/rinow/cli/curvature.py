@@ -40,6 +40,7 @@ def curvature(
     method: Method = "auto",
     quality: Quality = "best",
     radius: float | None = None,
+    weld: bool = False,
     field: Field = "gaussian",
     picture: Path | None = None,
     report: Path | None = None,
@@ -60,11 +61,15 @@ def curvature(
         File to write the mesh and its curvature to; may be repeated.  PLY, VTP, NPZ and GIFTI carry fields; points
         are written as PLY, CSV or NPZ.
     method
-        How to compute the curvature; for meshes.
+        How to compute the curvature, for meshes; auto needs no setting.  sectional and lifted use positions; intrinsic,
+        wald, robinson and angle_defect use edge lengths only and give the field gaussian only.
     quality
         fast is several times faster and less accurate; for meshes and the methods auto and sectional.
     radius
         Scale in the unit of length of the file; by default each method chooses its own.
+    weld
+        Take vertices at one place as one, for meshes: closes the seams that exporters make at textures and sharp
+        edges.  Each vertex keeps its place in the file and has its value.
     field
         The scalar that becomes `quality` in PLY, and is drawn, in the report at first.
     picture
@@ -79,7 +84,7 @@ def curvature(
         Print one JSON object instead of a table.
     """
     if holds_points(mesh):
-        given = {"method": method != "auto", "quality": quality != "best"}
+        given = {"method": method != "auto", "quality": quality != "best", "weld": weld}
         for option, is_given in given.items():
             if is_given:
                 raise InvalidInputError(f"--{option} needs faces, and {mesh} holds points only; leave it out.")
@@ -91,11 +96,13 @@ def curvature(
     with working(f"reading {mesh.name}"):
         surface = read_mesh(mesh)
     with working(f"curvature of {surface.n_vertices:,} vertices") as progress:
-        study = study_surface(surface, method=method, quality=quality, radius=radius, unit=unit, progress=progress)
+        study = study_surface(
+            surface, method=method, quality=quality, radius=radius, weld=weld, unit=unit, progress=progress
+        )
     features = None
     if report:
         with working(f"creases and corners of {surface.n_vertices:,} vertices"), study.timed("features"):
-            features = study_features(surface)
+            features = study_features(surface, weld=weld)
     notes: list[str] = []
     if not np.isfinite(study.fields(field)[field]).any():
         notes.append(f"{field} is undefined at every vertex: method {method} gives none on this mesh.")

@@ -11,6 +11,7 @@ from cyclopts import Parameter
 from rinow._version import __version__
 from rinow.cli._terminal import console, print_json, print_notes, working
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.point_files import check_has_faces
 from rinow.study.features import FIELDS, FeatureStudy, study_features
 from rinow.study.surface import mesh_counts
 
@@ -22,6 +23,7 @@ def features(
     /,
     *,
     output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
+    weld: bool = False,
     picture: Path | None = None,
     up: Literal["x", "y", "z"] = "z",
     json: bool = False,
@@ -36,6 +38,8 @@ def features(
         Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.
     output
         File to write the mesh and its features to; may be repeated.  PLY, VTP, NPZ and GIFTI carry fields.
+    weld
+        Take vertices at one place as one: closes the seams that exporters make at sharp edges and textures.
     picture
         PNG file to draw four views to.
     up
@@ -45,11 +49,12 @@ def features(
     """
     outputs = [*output, *([picture] if picture else [])]
     check_outputs(outputs, inputs=[mesh], pictures=[picture] if picture else [])
+    check_has_faces(mesh, "creases are found on a mesh")
     with working(f"reading {mesh.name}"):
         surface = read_mesh(mesh)
     with working(f"features of {surface.n_vertices:,} vertices"):
         start = time.perf_counter()
-        study = study_features(surface)
+        study = study_features(surface, weld=weld)
         seconds = time.perf_counter() - start
     notes = list(study.notes)
     for path in output:

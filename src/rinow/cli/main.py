@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
 from rinow._version import __version__
 from rinow.errors import RinowError
@@ -41,11 +41,12 @@ for name, summary in SUMMARIES.items():
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code: 0 done, 1 bad input (one sentence on stderr), 2 usage."""
+    """Run the command line and return its exit code: 0 done, 1 bad input, 2 usage (either in one line on stderr)."""
+    words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        app(sys.argv[1:] if arguments is None else list(arguments), exit_on_error=False, result_action="return_value")
-    except CycloptsError:
-        return USAGE  # cyclopts has printed what is wrong with the arguments
+        app(words, exit_on_error=False, print_error=False, result_action="return_value")
+    except CycloptsError as error:
+        return _fail(_usage(error), USAGE)
     except RinowError as error:
         return _fail(str(error))
     except MemoryError:
@@ -59,10 +60,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return OK
 
 
-def _fail(sentence: str) -> int:
-    """Print one line on stderr and return the exit code for bad input."""
+def _usage(error: CycloptsError) -> str:
+    """What is wrong with the arguments, and where to read what they are."""
+    command = " ".join(("rinow", *(error.command_chain or ())))
+    fault = str(error)
+    if isinstance(error, UnusedCliTokensError):
+        fault = f"{' '.join(error.unused_tokens or ())} is more than {command} takes."
+    return f"{fault} {command} --help lists the arguments."
+
+
+def _fail(sentence: str, code: int = BAD_INPUT) -> int:
+    """Print one line on stderr and return the exit code."""
     sys.stderr.write(f"rinow: {' '.join(sentence.split())}\n")
-    return BAD_INPUT
+    return code
 
 
 def run() -> None:

@@ -13,6 +13,7 @@ from rinow._version import __version__
 from rinow.cli._terminal import print_counts, print_json, print_notes, working
 from rinow.errors import FileFormatError
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.point_files import check_has_faces
 from rinow.io.tables import check_table, write_columns
 from rinow.nets.farthest_point import FarthestPointNet, farthest_point_net
 
@@ -57,6 +58,7 @@ def net(
         check_table(path, inputs=[mesh])
         if path.resolve() in {other.resolve() for other in tables[:i]}:
             raise FileFormatError(f"{path} is named twice as an output; choose another name.")
+    check_has_faces(mesh, "geodesic distances need a mesh (`rinow.farthest_point_net` takes points as a MetricSpace)")
     with working(f"reading {mesh.name}"):
         surface = read_mesh(mesh)
     begin = time.perf_counter()

@@ -60,7 +60,10 @@ def mesh_notes(mesh: TriangleMesh | IntrinsicMesh, *, oriented: bool) -> tuple[s
     if isinstance(mesh, TriangleMesh):
         n_seam = _seam_size(mesh)
         if n_seam:
-            notes.append(f"{n_seam} boundary vertices lie on others: these seams are open; weld them to close them.")
+            notes.append(
+                f"{n_seam} boundary vertices lie on others: these seams are open; `TriangleMesh.welded`, or --weld on "
+                "the command line, closes them."
+            )
         if oriented:
             notes += _orientation_notes(mesh)
     return tuple(notes)

@@ -188,7 +188,9 @@ def write_mesh(
             return form.write(file, surface, renamed(fields, names), renamed(meanings, names))
         notes = form.write(file, surface)
     if fields:
-        left_out = f"{form.name} holds geometry only; left out: {', '.join(fields)} (PLY, VTP and NPZ keep fields)."
+        left_out = (
+            f"{form.name} holds geometry only; left out: {', '.join(fields)} (PLY, VTP, NPZ and GIFTI keep fields)."
+        )
         notes = (left_out, *notes)
     return notes
 
@@ -262,6 +264,5 @@ def _format_of(path: Path, *, sniff: bool = False) -> _Format:
         raise FileFormatError(f"{path}: there is no such file; check the name and the folder.")
     if os.path.isdir(path):
         raise FileFormatError(f"{path} is a folder; give the name of a mesh file.")
-    raise FileFormatError(
-        f"{path} has no suffix of a known mesh format ({' '.join(_FORMATS)}); convert the mesh to PLY."
-    )
+    cure = "convert the mesh to PLY" if sniff else "choose one of these"
+    raise FileFormatError(f"{path} has no suffix of a known mesh format ({' '.join(_FORMATS)}); {cure}.")

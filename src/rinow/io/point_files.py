@@ -18,7 +18,7 @@ from rinow.io.fields import renamed
 from rinow.io.ply import has_faces, write_ply_points
 from rinow.io.tables import TABLE_SUFFIXES, read_points, write_columns
 
-__all__ = ["check_point_outputs", "holds_points", "read_cloud", "write_points"]
+__all__ = ["check_has_faces", "check_point_outputs", "holds_points", "read_cloud", "write_points"]
 
 Floats = NDArray[np.float64]
 
@@ -48,18 +48,35 @@ def holds_points(path: Path) -> bool:
     return suffix in TABLE_SUFFIXES
 
 
+def check_has_faces(path: Path, cure: str) -> None:
+    """Refuse a file of points where a mesh is needed.
+
+    Raises
+    ------
+    FileFormatError
+        If the file holds points only; the sentence ends with the cure.
+    """
+    if holds_points(path):
+        raise FileFormatError(f"{path} has no faces; {cure}.")
+
+
 def read_cloud(path: Path) -> tuple[Floats, tuple[str, ...]]:
     """Points in space, and what was left out of the file, one sentence each.
 
     Raises
     ------
     FileFormatError
-        If the file has a fault, or its rows have less than three numbers.
+        If the file has a fault, its rows have less than three numbers, or it holds a matrix of distances.
     """
     points = read_points(path)
     width = points.shape[1]
     if width < 3:
         raise FileFormatError(f"{path} has rows of {width} numbers; a point in space has three: x, y and z.")
+    if len(points) == width > 3 and np.allclose(points, points.T) and not points.diagonal().any():
+        raise FileFormatError(
+            f"{path} holds the distances of {width} points, not their places; rinow compare takes them with "
+            "--distances, and `rinow.metric_space_curvature` finds the curvature."
+        )
     notes = () if width == 3 else (f"The rows have {width} numbers; the first three are taken for x, y and z.",)
     return np.ascontiguousarray(points[:, :3]), notes
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.singular import SingularFeatures, singular_features
 from rinow.mesh import TriangleMesh
+from rinow.study.seams import without_seams
 
 __all__ = ["FIELDS", "FeatureStudy", "study_features"]
 
@@ -34,10 +35,13 @@ class FeatureStudy:
         The surface, unchanged.
     features : SingularFeatures
         What was found.
+    names : (n_vertices,) ndarray of intp
+        For each vertex the first one at its place, by which features are named.
     """
 
     mesh: TriangleMesh
     features: SingularFeatures
+    names: NDArray[np.intp]
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -77,20 +81,28 @@ class FeatureStudy:
         kind[f.corners] = 2
         cone = np.full(n, np.nan)
         cone[f.cone_points] = f.cone_angles
-        return {"feature": kind, "crease_angle": sums / np.maximum(at_vertex, 1), "cone_angle": cone}
+        data = {"feature": kind, "crease_angle": sums / np.maximum(at_vertex, 1), "cone_angle": cone}
+        return {name: values[self.names] for name, values in data.items()}
 
 
-def study_features(mesh: TriangleMesh) -> FeatureStudy:
+def study_features(mesh: TriangleMesh, *, weld: bool = False) -> FeatureStudy:
     """Find the singular points of a surface.
 
     Parameters
     ----------
     mesh : TriangleMesh
         The surface.
+    weld : bool, default False
+        Take vertices at one place as one, so that seams are closed, as is always done for separate triangles.
 
     Returns
     -------
     study : FeatureStudy
         The features and what is needed to read them.
     """
-    return FeatureStudy(mesh, singular_features(mesh))
+    if not (weld or mesh.is_soup):
+        return FeatureStudy(mesh, singular_features(mesh), np.arange(mesh.n_vertices))
+    surface, index, notes = without_seams(mesh)
+    found, first = singular_features(surface), np.unique(index, return_index=True)[1]
+    named = {name: first[getattr(found, name)] for name in ("cone_points", "crease_edges", "corners")}
+    return FeatureStudy(mesh, replace(found, **named, notes=notes + found.notes), first[index])

@@ -1,0 +1,85 @@
+"""The command line where something is wrong or somebody leaves: one line that says what to do, nothing half done."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import rinow
+import shapes
+from rinow.cli.main import main
+
+POINTS = np.random.default_rng(17).normal(size=(5, 3))
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    sphere = shapes.icosphere(1)
+    rinow.write_mesh("ball.ply", rinow.TriangleMesh(sphere.vertices, sphere.faces))
+    np.savetxt("points.csv", POINTS, delimiter=",")
+    np.savetxt("distances.csv", rinow.MetricSpace.from_points(POINTS).distances, delimiter=",")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (
+            "curvature",
+            'Command "curvature" parameter MESH requires an argument. rinow curvature --help lists the arguments.',
+        ),
+        ("info ball.ply more.ply", "more.ply is more than rinow info takes. rinow info --help lists the arguments."),
+        ("curvature ball.ply --radius wide", 'Invalid value for --radius: unable to convert "wide" into float.'),
+        ("nonsense", 'Unknown command "nonsense". Available commands: demo, info, curvature,'),
+    ],
+)
+def test_wrong_usage_is_one_line(folder, capsys, words, sentence):
+    assert main(words.split()) == 2
+    out = capsys.readouterr()
+    assert out.out == ""
+    assert out.err.startswith(f"rinow: {sentence}")
+    assert out.err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("features points.csv", "points.csv has no faces; creases are found on a mesh."),
+        ("net points.csv --size 2", "points.csv has no faces; geodesic distances need a mesh"),
+        (
+            "compare points.csv distances.csv",
+            "points.csv has no faces; add --points if its rows are points, --distances",
+        ),
+        ("compare ball.ply points.csv", "points.csv has no faces; add --points"),
+        (
+            "curvature distances.csv",
+            "distances.csv holds the distances of 5 points, not their places; rinow compare takes",
+        ),
+        ("info distances.csv", "distances.csv holds the distances of 5 points"),
+        ("curvature ball.ply -o out.docx", "out.docx has no suffix of a known mesh format (.ply"),
+    ],
+)
+def test_a_file_of_another_kind_is_told_by_name(folder, capsys, words, sentence):
+    assert main(words.split()) == 1
+    assert capsys.readouterr().err.removeprefix("rinow: ").removeprefix("B: ").startswith(sentence)
+
+
+def test_a_reader_who_has_seen_enough_is_no_error(folder):
+    code = "import sys; from rinow.cli.main import run; sys.argv[1:] = ['info', 'ball.ply']; run()"
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+        run.stdout.close()
+        assert run.stderr.read() == b""
+        assert run.wait() == 0
+
+
+def test_ctrl_c_while_a_file_is_written_leaves_none_and_says_nothing(folder, capsys, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("os.replace", interrupted)
+    before = sorted(path.name for path in folder.iterdir())
+    assert main(["curvature", "ball.ply", "-o", "out.ply"]) == 130
+    assert capsys.readouterr().err == ""
+    assert sorted(path.name for path in folder.iterdir()) == before
