@@ -121,7 +121,7 @@ def _origin(study: CurvatureStudy, version: str, made: str) -> str:
         ("method", used if wish == used else f"{used} (asked for: {wish})"),
         ("quality", str(asked.get("quality", "best"))),
         ("radius", "the choice of the method" if radius is None else f"{number(float(radius))} {study.unit}"),
-        ("unit of length", study.unit),
+        ("unit of length", "that of the file, not named" if study.unit == "length" else study.unit),
         ("time", ", ".join(f"{step} {seconds:.2f} s" for step, seconds in study.seconds.items())),
         ("page made", made),
     ]

@@ -122,6 +122,12 @@ function short(value) {
   return written(value, 4);
 }
 
+/** A number to the place of the second digit of its standard error, at least in one digit and at most in so many. */
+function rounded(value, error, digits) {
+  const known = Math.floor(Math.log10(Math.abs(value))) - Math.floor(Math.log10(error)) + 2;
+  return written(value, Number.isFinite(known) ? Math.min(Math.max(known, 1), digits) : digits);
+}
+
 /** A number in as many digits as asked for, without trailing zeros. */
 function written(value, digits) {
   if (!Number.isFinite(value)) return Number.isNaN(value) ? "nan" : value > 0 ? "∞" : "−∞";

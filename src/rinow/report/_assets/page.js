@@ -221,6 +221,7 @@ class Page {
     const code = arrays.status[vertex];
     const [name, meaning] = Object.entries(statuses)[code];
     const digits = Math.round(-Math.log10(this.scene.precision));
+    const spread = this.fields.get("spread")?.values[vertex];
     const decimals = Math.ceil(-Math.log10(step));
     const place = [0, 1, 2].map((c) => {
       const x = origin[c] + step * arrays.positions[3 * vertex + c];
@@ -230,7 +231,10 @@ class Page {
     this.line("x, y, z", name === "NONFINITE" ? "not finite" : `${place.join(", ")} ${unit}`, undefined, "place");
     for (const id of READOUT) {
       const f = this.fields.get(id);
-      if (f) this.line(SHORT_NAMES[id], (id === "spread" ? "± " : "") + written(f.values[vertex], id === "spread" ? 3 : digits), f.unit);
+      if (!f) continue;
+      const value = f.values[vertex];
+      const text = { gaussian: rounded(value, spread, digits), spread: `± ${written(value, 2)}` }[id];
+      this.line(SHORT_NAMES[id], text ?? written(value, digits), f.unit);
     }
     this.line("status", `${code} ${name}: ${meaning}`);
   }
