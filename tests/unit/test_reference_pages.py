@@ -39,3 +39,10 @@ def test_every_page_is_in_the_table_of_contents():
         place = page.relative_to(ROOT)
         if place.parts[0] == "docs" and page.name != "README.md" and place.parts[1] != "decisions":
             assert f"({place.relative_to('docs')})" in contents, f"docs/README.md does not list {place}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_table_has_a_heading(page):
+    """Rows after a blank line are no table without one of their own: they would be shown as text."""
+    for table in re.findall(r"(?:^\|.*\n)+", page.read_text(encoding="utf-8"), re.MULTILINE):
+        assert re.fullmatch(r"[-:| ]+", table.splitlines()[1]), f"{page.name}: {table.splitlines()[0]}"
