@@ -14,7 +14,7 @@ from rinow.comparison.surfaces import check_connected
 from rinow.errors import FileFormatError, InvalidInputError, naming
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
 from rinow.io.point_files import check_has_faces
-from rinow.io.tables import check_table, read_distances, read_points, write_columns
+from rinow.io.tables import check_tables, read_distances, read_points, write_columns
 from rinow.mesh import TriangleMesh
 from rinow.metric_space import MetricSpace
 from rinow.study.comparison import ComparisonStudy, Kind, Metric, compare_shapes
@@ -119,12 +119,7 @@ def _check_outputs(output: tuple[Path, ...], inputs: tuple[Path, Path], kind: Ki
     if len(output) > most:
         raise FileFormatError(f"{output[most]} is one output too many; the {metric} distance has {most}.")
     check_outputs([path for path in output if not _is_table(path, kind, metric)], inputs=inputs)
-    for path in output:
-        if _is_table(path, kind, metric):
-            check_table(path, inputs=inputs)
-    for i, path in enumerate(output):
-        if path.resolve() in {other.resolve() for other in output[:i]}:
-            raise FileFormatError(f"{path} is named twice as an output; choose another name.")
+    check_tables([path for path in output if _is_table(path, kind, metric)], inputs=inputs)
 
 
 def _is_table(path: Path, kind: Kind, metric: Metric) -> bool:

@@ -11,10 +11,10 @@ from cyclopts import Parameter
 
 from rinow._version import __version__
 from rinow.cli._terminal import print_counts, print_json, print_notes, working
-from rinow.errors import FileFormatError
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
 from rinow.io.point_files import check_has_faces
-from rinow.io.tables import check_table, write_columns
+from rinow.io.tables import check_tables, write_columns
+from rinow.mesh import TriangleMesh
 from rinow.nets.farthest_point import FarthestPointNet, farthest_point_net
 
 __all__ = ["net"]
@@ -54,10 +54,7 @@ def net(
     tables = [path for path in output if path.suffix.lower() == ".csv"]
     meshes = [path for path in output if path not in tables]
     check_outputs(meshes, inputs=[mesh])
-    for i, path in enumerate(tables):
-        check_table(path, inputs=[mesh])
-        if path.resolve() in {other.resolve() for other in tables[:i]}:
-            raise FileFormatError(f"{path} is named twice as an output; choose another name.")
+    check_tables(tables, inputs=[mesh])
     check_has_faces(mesh, "geodesic distances need a mesh (`rinow.farthest_point_net` takes points as a MetricSpace)")
     with working(f"reading {mesh.name}"):
         surface = read_mesh(mesh)
@@ -65,39 +62,34 @@ def net(
     with working(f"geodesic distances on {surface.n_vertices:,} vertices"):
         whole = int(size) if size is not None and size.is_integer() else size  # a type int would round without a word
         result = farthest_point_net(surface, size=cast(int | None, whole), radius=radius, start=start)
-    seconds = time.perf_counter() - begin
-    notes = list(surface.notes)
-    for path in meshes:
-        fields = {"net_distance": result.distances, "net_label": result.labels}
-        units = {
-            "net_distance": f"geodesic distance from the net, unit {unit}",
-            "net_label": "nearest point of the net, by its place in it; -1 off the surface",
-        }
-        notes += write_mesh(path, surface, fields, units=units, quality="net_distance")
-    for path in tables:
-        _write_points(path, result, surface.vertices, unit)
     record = {
         "size": len(result.indices),
         "covering_radius": result.covering_radius,
         "surface_radius": result.surface_radius,
-        "seconds": seconds,
+        "seconds": time.perf_counter() - begin,
     }
-    if json:
-        print_json(
-            {
-                "rinow": __version__,
-                "input": str(mesh),
-                **record,
-                "unit": unit,
-                "indices": result.indices.tolist(),
-                "radii": result.radii.tolist(),
-                "outputs": [str(path) for path in output],
-                "notes": notes,
-            }
-        )
+    notes = [*surface.notes]
+    for path in meshes:
+        notes += _write_mesh(path, result, surface, unit)
+    for path in tables:
+        _write_points(path, result, surface.vertices, unit)
+    if not json:
+        print_counts(f"{mesh}: net by farthest points", record)
+        print_notes((f"radii in {unit}; surface_radius bounds the distance inside the faces too.", *notes))
         return
-    print_counts(f"{mesh}: net by farthest points", record)
-    print_notes((f"radii in {unit}; surface_radius bounds the distance inside the faces too.", *notes))
+    order = {"indices": result.indices.tolist(), "radii": result.radii.tolist()}
+    files = {"outputs": [str(path) for path in output], "notes": notes}
+    print_json({"rinow": __version__, "input": str(mesh), **record, "unit": unit, **order, **files})
+
+
+def _write_mesh(path: Path, result: FarthestPointNet, surface: TriangleMesh, unit: str) -> tuple[str, ...]:
+    """The mesh with the distance from the net and the nearest point of it."""
+    fields = {"net_distance": result.distances, "net_label": result.labels}
+    units = {
+        "net_distance": f"geodesic distance from the net, unit {unit}",
+        "net_label": "nearest point of the net, by its place in it; -1 off the surface",
+    }
+    return write_mesh(path, surface, fields, units=units, quality="net_distance")
 
 
 def _write_points(path: Path, result: FarthestPointNet, vertices: np.ndarray, unit: str) -> None:

@@ -20,7 +20,7 @@ from rinow.io.npz import read_arrays
 from rinow.io.ply import read_ply_points
 from rinow.io.text_numbers import numbers_of_rows
 
-__all__ = ["TABLE_SUFFIXES", "check_table", "read_distances", "read_points", "write_columns"]
+__all__ = ["TABLE_SUFFIXES", "check_tables", "read_distances", "read_points", "write_columns"]
 
 Floats = NDArray[np.float64]
 
@@ -144,19 +144,25 @@ def _is_number(word: bytes) -> bool:
     return True
 
 
-def check_table(path: Path, *, inputs: Iterable[Path] = ()) -> None:
-    """Refuse a table that could not be written later.
+def check_tables(paths: Iterable[Path], *, inputs: Iterable[Path] = ()) -> None:
+    """Refuse tables that could not be written later.
 
     Raises
     ------
     FileFormatError
-        If the suffix is neither .csv nor .npz, or the file is an input or cannot be made where it is.
+        If a suffix is neither .csv nor .npz, or a file is an input, occurs twice, or cannot be made where it is.
     """
-    if path.suffix.lower() not in (".csv", ".npz"):
-        raise FileFormatError(f"{path} has neither suffix .csv nor .npz; choose another name for the table.")
-    if os.path.realpath(path) in {os.path.realpath(source) for source in inputs}:
-        raise FileFormatError(f"{path} is the input; choose another name for the output.")
-    check_target(path)
+    sources, seen = {os.path.realpath(source) for source in inputs}, set[str]()
+    for path in paths:
+        place = os.path.realpath(path)
+        if path.suffix.lower() not in (".csv", ".npz"):
+            raise FileFormatError(f"{path} has neither suffix .csv nor .npz; choose another name for the table.")
+        if place in sources:
+            raise FileFormatError(f"{path} is the input; choose another name for the output.")
+        if place in seen:
+            raise FileFormatError(f"{path} is named twice as an output; choose another name.")
+        seen.add(place)
+        check_target(path)
 
 
 def write_columns(path: Path, columns: Mapping[str, NDArray[np.generic]], meaning: str) -> None:
