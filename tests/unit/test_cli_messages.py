@@ -55,7 +55,7 @@ def test_wrong_usage_is_one_line(folder, capsys, words, sentence):
         ("compare ball.ply points.csv", "points.csv has no faces; add --points"),
         (
             "curvature distances.csv",
-            "distances.csv holds the distances of 5 points, not their places; rinow compare takes",
+            "distances.csv holds the distances of 5 points, not their places; add --distances",
         ),
         ("info distances.csv", "distances.csv holds the distances of 5 points"),
         ("curvature ball.ply -o out.docx", "out.docx has no suffix of a known mesh format (.ply"),

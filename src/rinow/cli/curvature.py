@@ -10,11 +10,14 @@ from cyclopts import Parameter
 
 from rinow._version import __version__
 from rinow.cli._terminal import print_json, print_notes, print_study, working
-from rinow.errors import InvalidInputError
+from rinow.errors import InvalidInputError, naming
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
 from rinow.io.point_files import check_point_outputs, holds_points, read_cloud, write_points
+from rinow.io.tables import check_tables, read_distances, write_columns
+from rinow.metric_space import MetricSpace
 from rinow.study.features import FeatureStudy, study_features
 from rinow.study.points import PointStudy, point_counts, study_points
+from rinow.study.spaces import study_space
 from rinow.study.surface import (
     PERCENTILES,
     SIGN,
@@ -41,6 +44,8 @@ def curvature(
     quality: Quality = "best",
     radius: float | None = None,
     weld: bool = False,
+    distances: bool = False,
+    rtol: float = 1e-9,
     field: Field = "gaussian",
     picture: Path | None = None,
     report: Path | None = None,
@@ -48,7 +53,7 @@ def curvature(
     unit: str = "length",
     json: bool = False,
 ) -> None:
-    """Compute the curvature at every vertex of a mesh or point of a cloud, in the order of the file.
+    """Compute the curvature at every vertex of a mesh or point of a cloud or metric space, in the order of the file.
 
     Convex with outward normal is positive.
 
@@ -56,10 +61,10 @@ def curvature(
     ----------
     mesh
         Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.  Points without faces: PLY, NPZ, NPY, or
-        text with x, y, z on each line (XYZ, CSV, TSV, TXT, DAT).
+        text with x, y, z on each line (XYZ, CSV, TSV, TXT, DAT).  With --distances a square matrix as text, NPY or NPZ.
     output
         File to write the mesh and its curvature to; may be repeated.  PLY, VTP, NPZ and GIFTI carry fields; points
-        are written as PLY, CSV or NPZ.
+        are written as PLY, CSV or NPZ, points known by their distances as CSV or NPZ.
     method
         How to compute the curvature, for meshes; auto needs no setting.  sectional and lifted use positions; intrinsic,
         wald, robinson and angle_defect use edge lengths only and give the field gaussian only.
@@ -70,6 +75,10 @@ def curvature(
     weld
         Take vertices at one place as one, for meshes: closes the seams that exporters make at textures and sharp
         edges.  Each vertex keeps its place in the file and has its value.
+    distances
+        The file holds all distances of some points, and nothing else is known of them.
+    rtol
+        Distances: how much the axioms of a metric may be broken, relative to the largest one.
     field
         The scalar that becomes `quality` in PLY, and is drawn, in the report at first.
     picture
@@ -83,11 +92,14 @@ def curvature(
     json
         Print one JSON object instead of a table.
     """
+    needs_faces = {"method": method != "auto", "quality": quality != "best", "weld": weld}
+    if distances:
+        drawn = {"field": field != "gaussian", "picture": picture is not None, "report": report is not None}
+        _refuse(needs_faces | drawn, f"needs a surface, and {mesh} holds distances only")
+        _curvature_of_distances(mesh, output, radius, rtol, unit, json)
+        return
     if holds_points(mesh):
-        given = {"method": method != "auto", "quality": quality != "best", "weld": weld}
-        for option, is_given in given.items():
-            if is_given:
-                raise InvalidInputError(f"--{option} needs faces, and {mesh} holds points only; leave it out.")
+        _refuse(needs_faces, f"needs faces, and {mesh} holds points only")
         _curvature_of_points(mesh, output, radius, field, Views(picture, report, up), unit, json)
         return
     pictures, pages = [picture] if picture else [], [report] if report else []
@@ -159,6 +171,32 @@ def _curvature_of_points(
     else:
         print_study(str(path), study)
         print_notes(notes)
+
+
+def _refuse(given: dict[str, bool], why: str) -> None:
+    """Raise for the first option that was given."""
+    for option, is_given in given.items():
+        if is_given:
+            raise InvalidInputError(f"--{option} {why}; leave it out.")
+
+
+def _curvature_of_distances(
+    path: Path, output: tuple[Path, ...], radius: float | None, rtol: float, unit: str, json: bool
+) -> None:
+    """The curvature at points known by their distances."""
+    check_tables(output, inputs=[path])
+    with working(f"reading {path.name}"), naming(str(path)):
+        space = MetricSpace(read_distances(path), rtol=rtol)
+    with working(f"curvature of {len(space):,} points"):
+        study = study_space(space, radius=radius, unit=unit)
+    fields, units = study.vertex_data(), study.units()
+    for target in output:
+        with working(f"writing {target.name}"):
+            write_columns(target, fields, "; ".join(f"{name}: {units[name]}" for name in fields))
+    if json:
+        print_json(_record(path, study, {"points": len(space)}, "gaussian", list(output), []))
+    else:
+        print_study(str(path), study)
 
 
 def write_picture(path: Path, study: SurfaceStudy | PointStudy, field: str, *, title: str, up: str) -> None:

@@ -27,7 +27,8 @@ app = App(
 SUMMARIES = {
     "demo": "Compute the curvature of the shipped mesh `spot`; write a PLY, a PNG and a page into the current folder.",
     "info": "Count the parts and the faults of a mesh, or of points without faces.",
-    "curvature": "Compute the curvature at every vertex of a mesh or point of a cloud, in the order of the file.\n\n"
+    "curvature": "Compute the curvature at every vertex of a mesh or point of a cloud or metric space, in the order of "
+    "the file.\n\n"
     "Convex with outward normal is positive.",
     "features": "Find the cone points, creases and corners of a mesh.\n\n"
     "Angles are in radians in files and JSON and in degrees in the table; convex is positive.",

@@ -74,8 +74,8 @@ def read_cloud(path: Path) -> tuple[Floats, tuple[str, ...]]:
         raise FileFormatError(f"{path} has rows of {width} numbers; a point in space has three: x, y and z.")
     if len(points) == width > 3 and np.allclose(points, points.T) and not points.diagonal().any():
         raise FileFormatError(
-            f"{path} holds the distances of {width} points, not their places; rinow compare takes them with "
-            "--distances, and `rinow.metric_space_curvature` finds the curvature."
+            f"{path} holds the distances of {width} points, not their places; add --distances (rinow curvature, "
+            "rinow compare)."
         )
     notes = () if width == 3 else (f"The rows have {width} numbers; the first three are taken for x, y and z.",)
     return np.ascontiguousarray(points[:, :3]), notes
