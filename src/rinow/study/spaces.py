@@ -18,7 +18,7 @@ __all__ = ["SpaceStudy", "study_space"]
 
 @dataclass(frozen=True, slots=True)
 class SpaceStudy(CurvatureStudy):
-    """Curvature at the points of a metric space, under the names it has for surfaces: `gaussian`, `spread`, `status`."""
+    """Curvature at the points of a metric space, with the names of surfaces: `gaussian`, `spread`, `status`."""
 
     place: ClassVar[str] = "point"
     places: ClassVar[str] = "points"
