@@ -70,11 +70,12 @@ def region(
         If an index is out of range, two points are not connected, or `radius` comes without one point or the reverse.
     """
     rows = metric_rows(space)
-    members = np.arange(rows.n_points) if points is None else as_indices(points, rows.n_points, "points")
+    name = "points" if np.ndim(points) else "point"  # some of them, or the centre of a ball
+    members = np.arange(rows.n_points) if points is None else as_indices(points, rows.n_points, name)
     limit = np.inf
     if radius is not None or members.ndim == 0:
         if points is None or members.size != 1 or radius is None or not radius > 0:
-            raise InvalidInputError(f"points = {points!r}, radius = {radius!r}: a ball has one centre, radius > 0.")
+            raise InvalidInputError(f"{name} = {points!r}, radius = {radius!r}: a ball has one centre, radius > 0.")
         centre, limit = int(members.ravel()[0]), 2.0 * radius * (1.0 + tolerances.TRIANGLE_INEQUALITY)
         inside = rows.row(centre, limit) <= radius
         inside[centre] = False
