@@ -130,7 +130,7 @@ def as_distance_matrix(
     if D.size == 0:
         raise InvalidInputError(f"{name} is empty; a metric space has at least one point.")
     if D.ndim != 2 or D.shape[0] != D.shape[1]:
-        raise InvalidInputError(f"{name} has shape {D.shape}; give a square matrix (MetricSpace.from_points makes one).")
+        raise InvalidInputError(f"{name} has shape {D.shape}; give a square matrix (see MetricSpace.from_points).")
     _refuse(~np.isfinite(D), D, name, "is not finite; replace or remove the point")
     _refuse(D < 0, D, name, "is negative; distances are not")
     scale = float(D.max())

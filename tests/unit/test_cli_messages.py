@@ -83,3 +83,11 @@ def test_ctrl_c_while_a_file_is_written_leaves_none_and_says_nothing(folder, cap
     assert main(["curvature", "ball.ply", "-o", "out.ply"]) == 130
     assert capsys.readouterr().err == ""
     assert sorted(path.name for path in folder.iterdir()) == before
+
+
+def test_help_says_nothing_of_flags_that_are_off(capsys):
+    assert main(["compare", "--help"]) == 0
+    out = capsys.readouterr().out
+    assert "--json" in out
+    assert "--output -o" in out
+    assert "[default: False]" not in out

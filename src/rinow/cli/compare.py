@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
-
-from cyclopts import Parameter
+from typing import Any
 
 from rinow._version import __version__
+from rinow.cli._arguments import Flag, Outputs
 from rinow.cli._terminal import print_counts, print_json, print_notes, working
 from rinow.comparison.hausdorff import HausdorffDistance
 from rinow.comparison.surfaces import check_connected
@@ -28,15 +27,15 @@ def compare(
     /,
     *,
     metric: Metric | None = None,
-    points: bool = False,
-    distances: bool = False,
-    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
+    points: Flag = False,
+    distances: Flag = False,
+    output: Outputs = (),
     tolerance: float = 1e-4,
     time_limit: float = 60.0,
     rtol: float = 1e-9,
-    verify: bool = False,
+    verify: Flag = False,
     unit: str = "length",
-    json: bool = False,
+    json: Flag = False,
 ) -> None:
     """Bound the distance of two meshes, point sets or distance matrices from below and from above.
 

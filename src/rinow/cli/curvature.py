@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
-from cyclopts import Parameter
 
 from rinow._version import __version__
+from rinow.cli._arguments import Flag, Outputs
 from rinow.cli._terminal import print_json, print_notes, print_study, working
 from rinow.errors import InvalidInputError, naming
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
@@ -39,19 +39,19 @@ def curvature(
     mesh: Path,
     /,
     *,
-    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
+    output: Outputs = (),
     method: Method = "auto",
     quality: Quality = "best",
     radius: float | None = None,
-    weld: bool = False,
-    distances: bool = False,
+    weld: Flag = False,
+    distances: Flag = False,
     rtol: float = 1e-9,
     field: Field = "gaussian",
     picture: Path | None = None,
     report: Path | None = None,
     up: Literal["x", "y", "z"] = "z",
     unit: str = "length",
-    json: bool = False,
+    json: Flag = False,
 ) -> None:
     """Compute the curvature at every vertex of a mesh or point of a cloud or metric space, in the order of the file.
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Annotated, Literal
-
-from cyclopts import Parameter
+from typing import Literal
 
 from rinow._version import __version__
+from rinow.cli._arguments import Flag, Outputs
 from rinow.cli._terminal import console, print_json, print_notes, working
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
 from rinow.io.point_files import check_has_faces
@@ -22,11 +21,11 @@ def features(
     mesh: Path,
     /,
     *,
-    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
-    weld: bool = False,
+    output: Outputs = (),
+    weld: Flag = False,
     picture: Path | None = None,
     up: Literal["x", "y", "z"] = "z",
-    json: bool = False,
+    json: Flag = False,
 ) -> None:
     """Find the cone points, creases and corners of a mesh.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rinow.cli._arguments import Flag
 from rinow.cli._terminal import print_counts, print_json, print_notes, working
 from rinow.io.mesh_files import read_mesh
 from rinow.io.point_files import holds_points, read_cloud
@@ -13,7 +14,7 @@ from rinow.study.surface import mesh_counts
 __all__ = ["info"]
 
 
-def info(mesh: Path, /, *, json: bool = False) -> None:
+def info(mesh: Path, /, *, json: Flag = False) -> None:
     """Count the parts and the faults of a mesh, or of points without faces.
 
     Parameters

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Annotated, cast
+from typing import cast
 
 import numpy as np
-from cyclopts import Parameter
 
 from rinow._version import __version__
+from rinow.cli._arguments import Flag, Outputs
 from rinow.cli._terminal import print_counts, print_json, print_notes, working
 from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
 from rinow.io.point_files import check_has_faces
@@ -27,9 +27,9 @@ def net(
     size: float | None = None,
     radius: float | None = None,
     start: int = 0,
-    output: Annotated[tuple[Path, ...], Parameter(name=["--output", "-o"], show_default=False)] = (),
+    output: Outputs = (),
     unit: str = "length",
-    json: bool = False,
+    json: Flag = False,
 ) -> None:
     """Choose vertices of a mesh that are nowhere far from the rest, by exact geodesic distances.
 
@@ -42,7 +42,7 @@ def net(
     radius
         Covering radius at which to stop, in the unit of length of the file.
     start
-        The first point.
+        The first point, counted from 0.
     output
         File to write to; may be repeated.  CSV: the points in the order of their choice; any other format: the mesh
         with the fields `net_distance` and `net_label`, which PLY, VTP, NPZ and GIFTI carry.

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
+from rinow.cli._arguments import Flag
 from rinow.cli._terminal import console, print_json, print_notes
 from rinow.embedding.cayley_menger import circumradius, is_euclidean_simplex, simplex_volume
 from rinow.embedding.quadruple import EmbeddingCurvatures, embedding_curvatures
@@ -26,7 +27,7 @@ REASONS = {
 }
 
 
-def quadruple(d12: float, d13: float, d14: float, d23: float, d24: float, d34: float, /, *, json: bool = False) -> None:
+def quadruple(d12: float, d13: float, d14: float, d23: float, d24: float, d34: float, /, *, json: Flag = False) -> None:
     """Print all surfaces of constant curvature in which four points have the given distances.
 
     Parameters
