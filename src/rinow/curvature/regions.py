@@ -70,7 +70,7 @@ def region(
         If an index is out of range, two points are not connected, or `radius` comes without one point or the reverse.
     """
     rows = metric_rows(space)
-    name = "points" if np.ndim(points) else "point"  # some of them, or the centre of a ball
+    name = "point" if points is not None and np.ndim(points) == 0 else "points"
     members = np.arange(rows.n_points) if points is None else as_indices(points, rows.n_points, name)
     limit = np.inf
     if radius is not None or members.ndim == 0:
