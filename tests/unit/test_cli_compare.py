@@ -107,13 +107,13 @@ def test_distance_matrices(folder, capfd):
 
 
 def test_verify_has_the_proof_of_a_solver_checked(folder, capfd, compiled_searches):
-    around = np.abs(np.subtract.outer(np.arange(24), np.arange(24)))
-    np.save("circle.npy", np.minimum(around, 24 - around))
-    np.save("segment.npy", np.abs(np.subtract.outer(np.arange(25), np.arange(25))) / 2)
+    around = np.abs(np.subtract.outer(np.arange(16), np.arange(16)))
+    np.save("circle.npy", np.minimum(around, 16 - around))
+    np.save("segment.npy", np.abs(np.subtract.outer(np.arange(17), np.arange(17))) / 2)
     limit = "--time-limit", "900"
     code, out, _ = run(capfd, "compare", "circle.npy", "segment.npy", "--distances", "--verify", "--json", *limit)
     record = json.loads(out)
-    assert code == 0 and record["lower"] <= 3.75 <= record["upper"]  # half of 15 half steps
+    assert code == 0 and record["lower"] <= 2.5 <= record["upper"]  # half of 10 half steps
     assert (record["lower_bound_by"], record["proof_checked"]) == ("satisfiability", True)
     assert main(["compare", "d.npz", "e.npy", "--distances", "--json"]) == 0
     assert json.loads(capfd.readouterr().out)["proof_checked"] is None
