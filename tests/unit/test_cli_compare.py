@@ -110,7 +110,7 @@ def test_verify_has_the_proof_of_a_solver_checked(folder, capfd, compiled_search
     around = np.abs(np.subtract.outer(np.arange(16), np.arange(16)))
     np.save("circle.npy", np.minimum(around, 16 - around))
     np.save("segment.npy", np.abs(np.subtract.outer(np.arange(17), np.arange(17))) / 2)
-    limit = "--time-limit", "900"
+    limit = "--time-limit", "120"
     code, out, _ = run(capfd, "compare", "circle.npy", "segment.npy", "--distances", "--verify", "--json", *limit)
     record = json.loads(out)
     assert code == 0 and record["lower"] <= 2.5 <= record["upper"]  # half of 10 half steps
