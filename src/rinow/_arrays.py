@@ -12,6 +12,7 @@ from rinow.errors import InvalidInputError, NotAMetricError
 
 __all__ = [
     "as_distance_matrix",
+    "as_distances",
     "as_floats",
     "as_index",
     "as_index_tuples",
@@ -119,6 +120,11 @@ def as_quadruples(quadruples: ArrayLike) -> tuple[tuple[int, ...], Floats]:
     return Q.shape[:-1], Q.reshape(-1, 6)
 
 
+def as_distances(distances: Any, name: str = "distances") -> Floats:
+    """Distances as numbers; a metric space stands for its matrix."""
+    return as_floats(getattr(distances, "distances", distances), name)
+
+
 def as_distance_matrix(
     distances: ArrayLike, *, rtol: float = tolerances.METRIC_TRIANGLE_INEQUALITY, name: str = "distances"
 ) -> Floats:
@@ -126,7 +132,7 @@ def as_distance_matrix(
 
     The triangle inequality is left to `MetricSpace`, which has the compiled test and finds the worst triple.
     """
-    D = as_floats(distances, name)
+    D = as_distances(distances, name)
     if D.size == 0:
         raise InvalidInputError(f"{name} is empty; a metric space has at least one point.")
     if D.ndim != 2 or D.shape[0] != D.shape[1]:

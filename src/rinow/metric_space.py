@@ -92,6 +92,10 @@ class MetricSpace:
     def __len__(self) -> int:
         return len(self.distances)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies, also those in other processes, are as frozen, and not checked again."""
+        return trusted_metric_space, (self.distances,)
+
     def __repr__(self) -> str:
         return f"MetricSpace(n_points={len(self)}, diameter={self.diameter:.6g})"
 

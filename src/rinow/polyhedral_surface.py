@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import fields
 from functools import cached_property
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +27,11 @@ class PolyhedralSurface(OneLine):
 
     faces: Indices
     n_vertices: int
+
+    def __reduce__(self) -> tuple[type[PolyhedralSurface], tuple[Any, ...]]:
+        """Copies, also those in other processes, are made of the same arguments, and are as frozen."""
+        values = (getattr(self, field.name) for field in fields(cast(Any, self)))
+        return type(self), tuple(dict(cast(Any, v)) if isinstance(v, Mapping) else v for v in values)
 
     @cached_property
     def edge_lengths(self) -> Floats:

@@ -24,7 +24,7 @@ def alt_curvature(
 
     Parameters
     ----------
-    points : (n_points, dimension) or (n_points, n_points) array_like of float
+    points : (n_points, dimension) or (n_points, n_points) array_like of float, or MetricSpace
         The points in order along the curve, or all their distances.
     index : (...) array_like of int
         The points asked for.

@@ -35,7 +35,7 @@ def curve_curvature(
 
     Parameters
     ----------
-    points : (n_points, dimension) or (n_points, n_points) array_like of float
+    points : (n_points, dimension) or (n_points, n_points) array_like of float, or MetricSpace
         The points in order along the curve, or all their distances.
     kind : {"menger", "haantjes", "alt"}, default "menger"
         Which definition.

@@ -19,7 +19,7 @@ def menger_curvature(distances: ArrayLike, triples: ArrayLike) -> NDArray[np.flo
 
     Parameters
     ----------
-    distances : (n_points, n_points) array_like of float
+    distances : (n_points, n_points) array_like of float, or MetricSpace
         All distances, in any unit of length.
     triples : (n_triples, 3) array_like of int
         The points of each triple, in any order.

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
-from rinow._arrays import as_distance_matrix, as_floats, as_points
+from rinow._arrays import as_distance_matrix, as_distances, as_points
 from rinow.errors import InvalidInputError
 from rinow.kernels import polylines
 
@@ -56,7 +56,7 @@ class Polyline:
 
 def as_polyline(points: ArrayLike, *, distances: bool | None, closed: bool) -> Polyline:
     """Points or, if `distances`, their distance matrix; if None, a matrix that can be one is one."""
-    data = as_floats(points, "points")
+    data = as_distances(points, "points")
     if distances is None:
         distances = _may_be_distances(data)
     if distances:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
-from rinow._arrays import as_floats
+from rinow._arrays import as_distances
 from rinow.errors import InvalidInputError
 from rinow.kernels import determinants
 
@@ -242,7 +242,7 @@ def is_cospherical(distances: ArrayLike, rtol: float = 1e-9) -> Flags:
 
 def _as_simplices(distances: ArrayLike) -> tuple[tuple[int, ...], Floats]:
     """Leading shape, and the matrices as one stack."""
-    D = as_floats(distances, "distances")
+    D = as_distances(distances)
     if D.ndim < 2 or D.shape[-1] != D.shape[-2] or D.shape[-1] == 0:
         raise InvalidInputError(f"distances has shape {D.shape}; give square matrices, shape (..., n, n) with n >= 1.")
     return D.shape[:-2], D.reshape(-1, *D.shape[-2:])

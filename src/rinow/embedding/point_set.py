@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
-from rinow._arrays import as_distance_matrix, as_floats
+from rinow._arrays import as_distance_matrix, as_distances
 from rinow._printing import OneLine
 from rinow.errors import InvalidInputError, NotAMetricError
 from rinow.kernels import point_sets
@@ -55,7 +55,7 @@ def fit_curvature(distances: ArrayLike) -> CurvatureFit:
 
     Parameters
     ----------
-    distances : (..., n, n) array_like of float
+    distances : (..., n, n) array_like of float, or MetricSpace
         Distances of n >= 4 points.
 
     Returns
@@ -97,7 +97,7 @@ def fit_curvature(distances: ArrayLike) -> CurvatureFit:
     >>> round(float(fit.value), 10)
     0.25
     """
-    D = as_floats(distances, "distances")
+    D = as_distances(distances)
     if D.ndim < 2 or D.shape[-1] != D.shape[-2] or D.shape[-1] < 4:
         raise InvalidInputError(f"distances has shape {D.shape}; give square matrices of at least 4 points.")
     flat = D.reshape(-1, *D.shape[-2:])
