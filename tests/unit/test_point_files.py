@@ -79,6 +79,15 @@ def test_bad_input_is_one_sentence(cloud, capsys, arguments, message):
     assert message in err and err.count("\n") == 1
 
 
+@pytest.mark.parametrize("heading", ["", "x;y;z\n", "x, mm;y, mm;z, mm\n", "# 1, 2; 3\n"])
+def test_beside_semicolons_commas_are_decimal_marks(tmp_path, heading):
+    path = tmp_path / "p.csv"
+    path.write_text(f"{heading}1,5;2,25;3\n-4,5;5;1e-2\n", encoding="utf-8")
+    np.testing.assert_array_equal(read_points(path), [[1.5, 2.25, 3], [-4.5, 5, 0.01]])
+    path.write_text("# a comment; with both, and rows with commas\n1,2,3\n4,5,6\n", encoding="utf-8")
+    np.testing.assert_array_equal(read_points(path), [[1, 2, 3], [4, 5, 6]])
+
+
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
 @pytest.mark.parametrize("heading", ["", "x;y;höhe\n"])
 def test_tables_of_spreadsheets_keep_their_first_row(tmp_path, encoding, heading):

@@ -39,9 +39,9 @@ def read_points(path: str | os.PathLike[str]) -> Floats:
     Parameters
     ----------
     path : path
-        Text with one point per line (.csv, .tsv, .txt, .xyz, .dat; commas, semicolons or white space; a heading and
-        lines that begin with # are skipped), .npy, .npz (its only array, or ``points``, ``P`` or ``V``), .ply, or any
-        file that `rinow.read_mesh` reads.
+        Text with one point per line (.csv, .tsv, .txt, .xyz, .dat; commas, semicolons or white space; beside semicolons
+        commas are decimal marks; a heading and lines that begin with # are skipped), .npy, .npz (its only array, or
+        ``points``, ``P`` or ``V``), .ply, or any file that `rinow.read_mesh` reads.
 
     Returns
     -------
@@ -118,11 +118,17 @@ def _chosen(arrays: Mapping[str, NDArray[np.generic]], names: tuple[str, ...]) -
 
 
 def _from_text(text: bytes) -> Floats:
-    """Rows of numbers; blank lines and comments are skipped, and so is a heading: a first row without any number."""
+    """Rows of numbers; blank lines and comments are skipped, and so is a heading: a first row without any number.
+
+    In a row with semicolons, which part numbers, commas are decimal marks, as in spreadsheets of half of Europe.
+    """
     for mark, encoding in MARKS.items():
         if text.startswith(mark):
             text = text.decode(encoding, errors="replace").encode()
-    lines = text.replace(b",", b" ").replace(b";", b" ").replace(b"\r", b"\n").split(b"\n")
+    lines = text.replace(b"\r", b"\n").split(b"\n")
+    rows = (line for line in lines if not line.lstrip().startswith(b"#"))
+    comma = b"." if b";" in text and any(b";" in row and b"," in row for row in rows) else b" "
+    lines = text.replace(b"\r", b"\n").replace(b",", comma).replace(b";", b" ").split(b"\n")
     kept = [i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith(b"#")]
     if kept and not any(_is_number(word) for word in lines[kept[0]].split()):
         del kept[0]
