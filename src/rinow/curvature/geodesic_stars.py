@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -73,8 +74,8 @@ def geodesic_wald(mesh: TriangleMesh | IntrinsicMesh, radius: float) -> Estimate
 
     Notes
     -----
-    A star has up to eight vertices near the distance `radius`, in about equal directions; its sides and the chords
-    between neighbours are exact geodesic distances.  The value is the only k at which the comparison angles at the
+    A star has up to eight vertices near the distance `radius`, in about equal directions, first one way round and then the
+    other from the vertex nearest to it; its sides and the chords between neighbours are exact geodesic distances.  The value is the only k at which the comparison angles at the
     centre sum to 2π (Wald), which by Gauss and Bonnet is a mean of the curvature within.  On a mesh of a smooth surface
     with edges of length h its error is of second order in `radius`, plus one of `(h/radius)²` or less: it converges if
     the radius tends to 0 more slowly than h.
@@ -128,11 +129,17 @@ def _both(mesh: TriangleMesh | IntrinsicMesh, sizes: Floats, method: Method) -> 
         block = centres[start : start + BLOCK]
         balls = geodesics.polar(block, max_distance=kernels.FARTHEST * sizes[block])
         for row, share in enumerate((1.0, INNER)):
-            ends = _ends(balls, t.vertex_is_boundary, sizes[block], share)
-            values[row, block] = method(geodesics, ends)
+            senses = [_ends(b, t.vertex_is_boundary, sizes[block], share) for b in (balls, _mirrored(balls))]
+            one, other = (method(geodesics, ends) for ends in senses)
+            values[row, block] = np.where(np.isnan(one), other, np.where(np.isnan(other), one, 0.5 * (one + other)))
             if row == 0:
-                radii[block] = ends.radii
+                radii[block] = senses[0].radii
     return values, radii
+
+
+def _mirrored(balls: GeodesicBalls) -> GeodesicBalls:
+    """The balls as they are seen from below."""
+    return replace(balls, directions=-balls.directions)
 
 
 def _ends(balls: GeodesicBalls, is_boundary: NDArray[np.bool_], sizes: Floats, share: float) -> _Ends:

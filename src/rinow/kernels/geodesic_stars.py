@@ -20,6 +20,8 @@ BEND, BEND_WEIGHT = 0.6, 44.0
 of the relative error of the radius: an angle of 0.15 costs as much as the whole radius."""
 ASIDE_WEIGHT = 3.0
 """What the squared angle to the middle of the sector costs for a first end."""
+TIE = 1e-12
+"""Costs this near each other are equal."""
 FEWEST, WIDEST = 5, 0.45
 """A star needs so many points, and no gap of so much of the full turn."""
 
@@ -43,15 +45,30 @@ def nearest_boundary(ball, begin, end, is_boundary):
 
 @kernel
 def best_end(ball, begin, end, radius, towards, full, widest, weight):
-    """The entry of the ball near a distance and a direction that costs least; -1 without one."""
+    """The entry of the ball near a distance and a direction that costs least; -1 without one.
+
+    Of two that cost the same, as mirror images do, it is the one to the left.
+    """
     _, distances, directions = ball
-    best, least = -1, np.inf
+    best, least, leftmost = -1, np.inf, -np.inf
     for j in range(begin, end):
-        off = abs(turned(directions[j] - towards, full))
-        if NEAREST * radius <= distances[j] <= FARTHEST * radius and off <= widest:
+        off = turned(directions[j] - towards, full)
+        if NEAREST * radius <= distances[j] <= FARTHEST * radius and abs(off) <= widest:
             cost = (distances[j] / radius - 1.0) ** 2 + weight * off * off
-            if cost < least:
-                best, least = j, cost
+            if cost < least - TIE or (cost <= least + TIE and off > leftmost):
+                best, least, leftmost = j, min(cost, least), off
+    return best
+
+
+@kernel
+def first_direction(ball, begin, end, radius):
+    """Direction of the entry nearest to the radius: it knows no numbering of the vertices."""
+    _, distances, directions = ball
+    best, least = 0.0, np.inf
+    for j in range(begin, end):
+        off = abs(distances[j] / radius - 1.0)
+        if off < least:
+            best, least = directions[j], off
     return best
 
 
@@ -59,14 +76,15 @@ def best_end(ball, begin, end, radius, towards, full, widest, weight):
 def choose_ends(ball, offsets, totals, is_boundary, share, radii, entries, bends):
     """Write the ends of four lines through each centre as entries of its ball, -1 for none, and the bends of the lines.
 
-    A bend is the angle by which the second end is beyond the straight continuation.  The radii are cut short at the
-    boundary, and to `share` of that.
+    The first line leaves towards the entry nearest to the radius.  A bend is the angle by which the second end is beyond
+    the straight continuation.  The radii are cut short at the boundary, and to `share` of that.
     """
     for i in prange(radii.shape[0]):
         begin, end, full = offsets[i], offsets[i + 1], totals[i]
         radii[i] = share * min(radii[i], nearest_boundary(ball, begin, end, is_boundary))
+        first = first_direction(ball, begin, end, radii[i])
         for k in range(LINES):
-            towards = 0.5 * full * k / LINES
+            towards = first + 0.5 * full * k / LINES
             a = best_end(ball, begin, end, radii[i], towards, full, SECTOR * full, ASIDE_WEIGHT)
             entries[i, k], entries[i, k + LINES] = a, -1
             if a >= 0:
