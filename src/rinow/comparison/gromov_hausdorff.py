@@ -125,11 +125,13 @@ def gromov_hausdorff(
     The larger spaces of which X and Y are nets with covering radii r and s differ in distance by at most max(r, s) from
     the nets: let every point x of the one have the partner of a net point p(x) within r, and every y of the other the
     partner of a q(y) within s; then d(x, q(y)) and d(p(x), y) change by r + s at most, distances within one space by 2r
-    and 2s.  The same argument leads from the larger spaces to the nets.  From below more is true: for a finite subset A of X and a correspondence of distortion δ, let f(a) be a point of the net of Y nearest
-    to a partner of a; then :math:`\mathrm{dis} f \le \delta + 2s`.  Hence :math:`2 d_{GH} \ge \min \mathrm{dis} f - 2s`
-    over the maps f of A into the net, without r, and the same the other way round ("maps of subsets").  Of spaces of
-    thousands of points, a dozen points and those farthest from them and from their partners are mapped into all of the
-    other space where the lower bound stays below half the upper one; this has the same name.
+    and 2s.  The same argument leads from the larger spaces to the nets.
+
+    From below more is true: for a finite subset A of X and a correspondence of distortion δ, let f(a) be a point of the
+    net of Y nearest to a partner of a; then :math:`\mathrm{dis} f \le \delta + 2s`.  Hence :math:`2 d_{GH} \ge \min
+    \mathrm{dis} f - 2s` over the maps f of A into the net, without r, and the same the other way round ("maps of
+    subsets").  Of spaces of thousands of points, a dozen points and those farthest from them and from their partners
+    are mapped into all of the other space where the lower bound stays below half the upper one; this has the same name.
 
     An interval that stays open is raised by holes that one space has and the other one lacks ("persistence") if the
     extra of this name is installed (GUDHI) and a second is left.

@@ -48,8 +48,8 @@ def raise_by_persistence(DX: Floats, DY: Floats, interval: Interval, clock: Cloc
 def persistence_bound(DX: Floats, DY: Floats, dimension: int, lower: float = 0.0) -> float:
     """Lower bound of the least distortion by holes of a dimension; 0 where it cannot be above `lower`.
 
-    Of larger spaces nets are looked at, whose distance differs by the larger covering radius at most.  No hole outlives the radius
-    of the space: from there on the complex is a cone.
+    Of larger spaces nets are looked at, whose distance differs by the larger covering radius at most.  No hole outlives
+    the radius of the space: from there on the complex is a cone.
     """
     nets = [farthest_points(D, NETS[dimension]) for D in (DX, DY)]
     loss = 2.0 * max(float(D[net].min(axis=0).max()) for D, net in zip((DX, DY), nets, strict=True))

@@ -102,7 +102,7 @@ def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: floa
 
 
 def insist(engine: Engine, interval: Interval, clock: Clock) -> None:
-    """Tabu searches from random maps, each twice as long as the last one: few levels are far apart, hence hard to meet."""
+    """Tabu searches from random maps, each twice as long as the last one: few levels are hard to meet."""
     (n, m), rng, n_moves = engine.shape, np.random.default_rng(21), MOVES * sum(engine.shape)
     for seed in itertools.count(STARTS):
         if interval.closed or clock.over:
