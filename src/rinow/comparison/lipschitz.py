@@ -28,8 +28,8 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 SEARCHED, OFFERED = 1500, 0.5
-"""Points of spaces whose bijections are searched: one step of a search is cubic, and looks at no clock; share of the time
-in which those of larger spaces are assigned."""
+"""Points of spaces whose bijections are searched: one step of a search is cubic, and looks at no clock.  Beyond that
+some are found by assignment, in this share of the time."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
