@@ -41,6 +41,9 @@ WARM, LONGEST_WARM, WARM_SPEED = 0.15, 0.6, 130_000
 CLIMB, INSISTENCE = 0.7, 0.7
 """Shares of the time for levels from below, where they are few, and of what is left then for long tabu searches."""
 
+LONG_SEARCHES = 7
+"""Number of these, the last one 64 times as long as the first."""
+
 LEARNING = 0.4
 """Share of the time for a clause-learning solver; the share of what is left, anew, with each relation that it finds."""
 
@@ -104,7 +107,7 @@ def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: floa
 def insist(engine: Engine, interval: Interval, clock: Clock) -> None:
     """Tabu searches from random maps, each twice as long as the last one: few levels are hard to meet."""
     (n, m), rng, n_moves = engine.shape, np.random.default_rng(21), MOVES * sum(engine.shape)
-    for seed in itertools.count(STARTS):
+    for seed in range(STARTS, STARTS + LONG_SEARCHES):
         if interval.closed or clock.over:
             return
         search = RelationTabu(engine.DX, engine.DY, rng.integers(m, size=n), rng.integers(n, size=m), seed)
