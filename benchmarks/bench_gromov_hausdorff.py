@@ -204,14 +204,14 @@ def measured_on(mesh: Any, points: np.ndarray) -> tuple[np.ndarray, float, float
 
 
 def measured_again(pairs: np.ndarray, X: Any, Y: Any, covering_radii: tuple[float, float]) -> float:
-    """Upper bound by a correspondence: half its distortion, and how far other points are from those in it."""
+    """Upper bound by a correspondence: half its distortion, and how far other points are from those in it at most."""
     if isinstance(X, rinow.MetricSpace):
-        return rinow.distortion(pairs, X, Y) / 2 + sum(covering_radii)
+        return rinow.distortion(pairs, X, Y) / 2 + max(covering_radii)
     (xs, i), (ys, j) = (np.unique(side, return_inverse=True) for side in pairs.T)
     (DX, *x), (DY, *y) = measured_on(X, xs), measured_on(Y, ys)
-    radii, diameter = x[0] + y[0], max(x[1], y[1])
+    radius, diameter = max(x[0], y[0]), max(x[1], y[1])
     half = max(float(np.abs(DX[a, i] - DY[b, j]).max()) for a, b in zip(i, j, strict=True)) / 2
-    return min(half + radii, diameter / 2) if radii > 0 else half
+    return min(half + radius, diameter / 2) if radius > 0 else half
 
 
 def show(

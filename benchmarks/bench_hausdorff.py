@@ -4,15 +4,17 @@
 
 Every pair has two meshes of `n_faces` faces (100,000 by default).  rinow gives an interval of width 1e-4 of the
 diagonal at most, that contains the distance; the others give one number that is at most the distance.  Times are those
-of one call after a call on small meshes, reading of files not included.  MeshLab is asked only on request: distant
-surfaces take it minutes.
+of one call after a call on small meshes, reading of files not included.  A peer runs in a process of its own and has
+60 seconds for each pair; MeshLab is asked only on request.
 """
 
 from __future__ import annotations
 
+import multiprocessing
 import sys
 import time
 from collections.abc import Callable
+from multiprocessing.connection import Connection
 from typing import Any
 
 import numpy as np
@@ -21,6 +23,9 @@ from _mesh import jittered_torus
 import rinow
 
 Mesh = tuple[np.ndarray, np.ndarray]
+
+LIMIT = 60.0
+"""Seconds after which a peer is stopped."""
 
 
 def fibonacci_sphere(n: int, radius: float, turn: float) -> Mesh:
@@ -88,12 +93,34 @@ def meshlab(A: Mesh, B: Mesh) -> float:
 
 
 def timed(action: Callable[[Mesh, Mesh], Any], A: Mesh, B: Mesh) -> tuple[Any, float]:
-    """Result and wall seconds; nan where the package is missing."""
+    """Result and wall seconds."""
+    start = time.perf_counter()
+    return action(A, B), time.perf_counter() - start
+
+
+def answer(peer: Callable[[Mesh, Mesh], float], A: Mesh, B: Mesh, out: Connection) -> None:
+    """Send the cell of a peer, timed after a call on small meshes."""
     try:
-        start = time.perf_counter()
-        return action(A, B), time.perf_counter() - start
+        timed(peer, *pairs(500)["two meshes of one torus"])
+        value, seconds = timed(peer, A, B)
+        out.send(f"{value:10.8f} {seconds:6.2f}")
     except ImportError:
-        return float("nan"), float("nan")
+        out.send("not installed")
+
+
+def cell_of(peer: Callable[[Mesh, Mesh], float], A: Mesh, B: Mesh) -> str:
+    """What a peer says and how long it takes, or that it does not answer."""
+    here, there = multiprocessing.Pipe(duplex=False)
+    process = multiprocessing.get_context("spawn").Process(target=answer, args=(peer, A, B, there))
+    process.start()
+    there.close()
+    try:
+        text = here.recv() if here.poll(LIMIT) else f"none in {LIMIT:g} s"
+    except EOFError:
+        text = "crashed"
+    process.kill()
+    process.join()
+    return f"{text:>17}"
 
 
 def main() -> None:
@@ -101,16 +128,15 @@ def main() -> None:
     numbers = [word for word in sys.argv[1:] if word.isdigit()]
     n = (int(numbers[0]) if numbers else 100_000) // 2
     peers = [libigl, meshlab] if "--meshlab" in sys.argv else [libigl]
-    for action in (rinow.hausdorff_distance, *peers):
-        timed(action, *pairs(500)["two meshes of one torus"])
+    timed(rinow.hausdorff_distance, *pairs(500)["two meshes of one torus"])
     head = "".join(f" {peer.__name__:>10} {'s':>6}" for peer in peers)
     print(f"{'pair':28} {'rinow, certified':>24} {'width/diag':>10} {'s':>6}{head}")
     for name, (A, B) in pairs(n).items():
         result, seconds = timed(rinow.hausdorff_distance, A, B)
         diagonal = max(np.linalg.norm(np.ptp(V, axis=0)) for V, _ in (A, B))
-        cells = [f"{name:28} [{result.lower:.8f}, {result.upper:.8f}] {(result.upper - result.lower) / diagonal:10.1e}"]
-        for value, s in ((None, seconds), *(timed(peer, A, B) for peer in peers)):
-            cells.append(f"{s:6.2f}" if value is None else f"{value:10.8f} {s:6.2f}")
+        width = (result.upper - result.lower) / diagonal
+        cells = [f"{name:28} [{result.lower:.8f}, {result.upper:.8f}] {width:10.1e} {seconds:6.2f}"]
+        cells += [cell_of(peer, A, B) for peer in peers]
         print(*cells, flush=True)
 
 

@@ -286,6 +286,18 @@ def test_climbing_from_below_gives_the_distance_of_graphs(seed):
     assert distortion(interval.pairs, X, Y) == exact
 
 
+@SLOW
+def test_longer_and_longer_tabu_searches_meet_a_low_level():
+    rng = np.random.default_rng(13)
+    X, Y = hops(rng, 40, share=0.05), hops(rng, 40, share=0.05)
+    least = unlimited(X, Y).upper * 2
+    interval = first_interval(X, Y, 0.0)
+    assert interval.upper > least
+    interval.lower = least
+    steps.insist(Engine(X, Y), interval, Clock(math.inf))
+    assert distortion(interval.pairs, X, Y) == interval.upper == least
+
+
 @pytest.mark.parametrize("seed", range(110, 122))
 def test_search_at_one_level_agrees_with_brute_force(seed):
     rng = np.random.default_rng(seed)

@@ -4,6 +4,7 @@ import json
 import math
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 from scipy.sparse import csr_array
@@ -11,10 +12,15 @@ from scipy.spatial.distance import pdist, squareform
 
 from naive import correspondences as naive
 from rinow import MetricSpace, dilatation, gromov_hausdorff, lipschitz_distance, uniform_distance
+from rinow.comparison import large_bijections, lipschitz
 from rinow.comparison.bounds import matching_bound
+from rinow.comparison.clock import Clock
+from rinow.comparison.interval import Interval
+from rinow.comparison.large_bijections import offer_bijections
 from rinow.errors import InvalidInputError, NotAMetricError
 
 GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "gromov_hausdorff.json").read_text())
+SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes")
 LINE = [[0, 1, 2], [1, 0, 1], [2, 1, 0]]
 
 
@@ -157,3 +163,21 @@ def test_no_search_knows_that_eccentricities_differ():
     X = cloud(np.random.default_rng(15), 30)
     result = lipschitz_distance(X, 3 * X[::-1, ::-1], time_limit=0)
     assert (result.lower, result.lower_bound_by) == (math.log(3), "eccentricities")
+
+
+@SLOW
+def test_bijections_of_many_points_follow_from_those_of_few(monkeypatch):
+    """A shuffled copy is found from four anchors, a copy in another unit too; nothing is begun without time."""
+    monkeypatch.setattr(large_bijections, "ANCHORS", 4)
+    rng = np.random.default_rng(17)
+    X = squareform(pdist(rng.random((30, 2))))
+    order = rng.permutation(30)
+    for factor in (1.0, 2.0):
+        Y = factor * X[np.ix_(order, order)]
+        for seconds, value in ((math.inf, factor), (0.0, math.inf)):
+            interval = Interval(np.stack([np.arange(30)] * 2, axis=1), math.inf, lower=1.0)
+            offer_bijections(X, Y, interval, Clock(seconds))
+            assert interval.upper == value
+    whole = lipschitz_distance(X, Y, time_limit=math.inf)
+    monkeypatch.setattr(lipschitz, "SEARCHED", 20)
+    assert lipschitz_distance(X, Y, time_limit=math.inf).upper == whole.upper == math.log(2.0)

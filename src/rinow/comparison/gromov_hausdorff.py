@@ -41,7 +41,8 @@ class GromovHausdorff(OneLine):
         Whether the two are equal.
     correspondence : (k, 2) ndarray of int
         Pairs (x, y) that cover both spaces; half their distortion is `upper`.  Where nets are compared they cover the
-        nets, and `upper` is half their distortion plus the covering radii, or half the larger diameter if that is less.
+        nets, and `upper` is half their distortion plus the larger covering radius, or half the larger diameter if that
+        is less.
     lower_bound_by : str
         What proved `lower`: "non-negativity", "diameter", "eccentricities", "packing", "single linkage", "sorted
         distances", "arc consistency", "search", "satisfiability", "persistence" or "maps of subsets".
@@ -121,12 +122,16 @@ def gromov_hausdorff(
     of 100 points in the plane take seconds; the time grows exponentially in the worst case.
     :math:`|\mathrm{diam} X - \mathrm{diam} Y| / 2 \le d_{GH} \le \max(\mathrm{diam} X, \mathrm{diam} Y) / 2`.
 
-    With covering radii r and s the larger spaces are within r + s of the distance of the nets.  From below more is
-    true: for a finite subset A of X and a correspondence of distortion δ, let f(a) be a point of the net of Y nearest
-    to a partner of a; then :math:`\mathrm{dis} f \le \delta + 2s`.  Hence :math:`2 d_{GH} \ge \min \mathrm{dis} f - 2s`
-    over the maps f of A into the net, without r, and the same the other way round ("maps of subsets").  Of spaces of
-    thousands of points, a dozen points and those farthest from them and from their partners are mapped into all of the
-    other space where the lower bound stays below half the upper one; this has the same name.
+    The larger spaces of which X and Y are nets with covering radii r and s differ in distance by at most max(r, s) from
+    the nets: let every point x of the one have the partner of a net point p(x) within r, and every y of the other the
+    partner of a q(y) within s; then d(x, q(y)) and d(p(x), y) change by r + s at most, distances within one space by 2r
+    and 2s.  The same argument leads from the larger spaces to the nets.
+
+    From below more is true: for a finite subset A of X and a correspondence of distortion δ, let f(a) be a point of the
+    net of Y nearest to a partner of a; then :math:`\mathrm{dis} f \le \delta + 2s`.  Hence :math:`2 d_{GH} \ge \min
+    \mathrm{dis} f - 2s` over the maps f of A into the net, without r, and the same the other way round ("maps of
+    subsets").  Of spaces of thousands of points, a dozen points and those farthest from them and from their partners
+    are mapped into all of the other space where the lower bound stays below half the upper one; this has the same name.
 
     An interval that stays open is raised by holes that one space has and the other one lacks ("persistence") if the
     extra of this name is installed (GUDHI) and a second is left.
@@ -145,11 +150,11 @@ def gromov_hausdorff(
     >>> result.exact, round(result.upper, 6), result.lower_bound_by
     (True, 0.5, 'packing')
 
-    A circle of length 4 and its diameter as spaces, known by nets of 16 and 9 points:
+    A circle of length 4 and its diameter as spaces, known by nets of 8 and 9 points:
 
     >>> steps = abs(np.arange(16)[:, None] - np.arange(16))
-    >>> circle, segment = np.minimum(steps, 16 - steps) / 4, steps[:9, :9] / 4
-    >>> result = gromov_hausdorff(circle, segment, covering_radii=(1 / 8, 1 / 8))
+    >>> circle, segment = np.minimum(steps, 16 - steps)[::2, ::2] / 4, steps[:9, :9] / 4
+    >>> result = gromov_hausdorff(circle, segment, covering_radii=(1 / 4, 1 / 8))
     >>> result.lower_bound_by, result.lower <= 2 / 3 <= result.upper
     ('maps of subsets', True)
     """
@@ -166,7 +171,7 @@ def gromov_hausdorff(
     proved = Proved(0.5 * interval.lower, interval.by, interval.proof_checked)
     if sum(radii) > 0.0:
         diameters = [sample.diameter_bound + 2.0 * r for sample, r in zip(samples, beyond, strict=True)]
-        upper, exact = min(upper + sum(radii), 0.5 * max(diameters)), False
+        upper, exact = min(upper + max(radii), 0.5 * max(diameters)), False
         proved = _proved_beyond(samples, proved, beyond, clock, verify=verify)
     pairs = np.stack([samples[0].indices[interval.pairs[:, 0]], samples[1].indices[interval.pairs[:, 1]]], axis=1)
     return GromovHausdorff(proved.lower, upper, exact, pairs, proved.by, radii, proved.proof_checked)
@@ -196,7 +201,7 @@ def _proved_beyond(
     radii = samples[0].covering_radius + beyond[0], samples[1].covering_radius + beyond[1]
     best = max(
         Proved(0.0, "non-negativity"),
-        samples_proved._replace(lower=samples_proved.lower - sum(radii)),
+        samples_proved._replace(lower=samples_proved.lower - max(radii)),
         Proved(0.5 * eccentricity_gap(*samples, beyond), "eccentricities"),
         key=lambda proved: proved.lower,
     )

@@ -16,6 +16,7 @@ from rinow.comparison.bounds import matching_bound
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, Engine, worst_of
 from rinow.comparison.interval import Interval
+from rinow.comparison.large_bijections import offer_bijections
 from rinow.errors import InvalidInputError
 from rinow.kernels import distortion
 from rinow.kernels.compatibility import sorted_ratio
@@ -26,8 +27,9 @@ __all__ = ["LipschitzDistance", "MetricSpace", "as_map", "dilatation", "infinite
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-SEARCHED = 1500
-"""Points of spaces whose bijections are searched: one step of a search is cubic, and looks at no clock."""
+SEARCHED, OFFERED = 1500, 0.5
+"""Points of spaces whose bijections are searched: one step of a search is cubic, and looks at no clock.  Beyond that
+some are found by assignment, in this share of the time."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -69,7 +71,8 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
         Two finite metric spaces, or their distance matrices.
     time_limit : float, default 60
         Seconds after which the search stops with the bounds reached so far; with 0 the bounds that cost no search.
-        One step may overrun it by some tenths of a second.  Bijections of more than 1500 points are not searched.
+        One step may overrun it by some tenths of a second.  Bijections of more than 1500 points are not searched: some
+        are found by assigning points whose distances from a few matched points agree, in some seconds each.
     verify : bool, default False
         Have the clause-learning solver write down its proof, and check it: that takes two or three times as long
         as finding it.  A refutation with a wrong proof is not used.
@@ -121,6 +124,8 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
         return infinitely_far()
     _check_ratios(DX, DY)
     interval = _first_interval(DX, DY, verify=verify)
+    if len(DX) > SEARCHED:
+        offer_bijections(DX, DY, interval, clock.part(OFFERED * clock.left))
     if not interval.closed and not clock.over:
         engine = Engine(DX, DY, BIJECTION, clock=clock)
         interval.raise_lower(engine.row_bound, "sorted distances")

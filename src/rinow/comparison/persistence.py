@@ -48,11 +48,11 @@ def raise_by_persistence(DX: Floats, DY: Floats, interval: Interval, clock: Cloc
 def persistence_bound(DX: Floats, DY: Floats, dimension: int, lower: float = 0.0) -> float:
     """Lower bound of the least distortion by holes of a dimension; 0 where it cannot be above `lower`.
 
-    Of larger spaces a net is looked at, which is within its covering radius of the space.  No hole outlives the radius
-    of the space: from there on the complex is a cone.
+    Of larger spaces nets are looked at, whose distance differs by the larger covering radius at most.  No hole outlives
+    the radius of the space: from there on the complex is a cone.
     """
     nets = [farthest_points(D, NETS[dimension]) for D in (DX, DY)]
-    loss = 2.0 * sum(float(D[net].min(axis=0).max()) for D, net in zip((DX, DY), nets, strict=True))
+    loss = 2.0 * max(float(D[net].min(axis=0).max()) for D, net in zip((DX, DY), nets, strict=True))
     A, B = (D[np.ix_(net, net)] for D, net in zip((DX, DY), nets, strict=True))
     if 0.5 * max(A.max(axis=1).min(), B.max(axis=1).min()) - loss <= lower:
         return 0.0

@@ -38,8 +38,11 @@ PROOF = 0.25
 WARM, LONGEST_WARM, WARM_SPEED = 0.15, 0.6, 130_000
 """Share of the time for tabu search; more, up to another share, where many points need it: so many pairs a second."""
 
-CLIMB = 0.7
-"""Share of the time for levels from below, where they are few."""
+CLIMB, INSISTENCE = 0.7, 0.7
+"""Shares of the time for levels from below, where they are few, and of what is left then for long tabu searches."""
+
+LONG_SEARCHES = 7
+"""Number of these, the last one 64 times as long as the first."""
 
 LEARNING = 0.4
 """Share of the time for a clause-learning solver; the share of what is left, anew, with each relation that it finds."""
@@ -63,9 +66,10 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
     if engine.kind == BIJECTION:
         symmetries = symmetries[0].exact(), symmetries[1].exact()
     homogeneous = any(symmetric.transitive for symmetric in symmetries)
-    share, climbing = (0.05, 0.05) if homogeneous else (0.2, CLIMB)
+    share, climbing, insistence = (0.05, 0.05, 0.05) if homogeneous else (0.2, CLIMB, INSISTENCE)
     if engine.kind == RELATION and engine.levels.few:
         climb(engine, interval, clock.part(climbing * clock.left), symmetries)
+        insist(engine, interval, clock.part(insistence * clock.left))
         if interval.closed:
             return
     possible = branch_and_bound(engine, interval, clock.part(share * clock.left), None, symmetries)
@@ -98,6 +102,18 @@ def warm_start(engine: Engine, interval: Interval, clock: Clock, *, target: floa
                 interval.refuted(level, engine, "arc consistency")
         if interval.closed or clock.over or k + 1 == STARTS:
             return
+
+
+def insist(engine: Engine, interval: Interval, clock: Clock) -> None:
+    """Tabu searches from random maps, each twice as long as the last one: few levels are hard to meet."""
+    (n, m), rng, n_moves = engine.shape, np.random.default_rng(21), MOVES * sum(engine.shape)
+    for seed in range(STARTS, STARTS + LONG_SEARCHES):
+        if interval.closed or clock.over:
+            return
+        search = RelationTabu(engine.DX, engine.DY, rng.integers(m, size=n), rng.integers(n, size=m), seed)
+        search.run(n_moves, clock, interval.lower)
+        interval.offer(search.pairs, search.best)
+        n_moves *= 2
 
 
 def _searches(engine: Engine, rng: np.random.Generator, interval: Interval, clock: Clock) -> Iterator[TabuSearch]:

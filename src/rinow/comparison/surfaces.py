@@ -30,13 +30,13 @@ ALL_VERTICES = 3000
 LARGEST_DISTANCE = 1e307
 """From the first point to the farthest one, so that sums of distances are numbers."""
 
-LARGEST_NET, NET_BYTES = 600, 1 << 28
+LARGEST_NET, NET_BYTES = 580, 1 << 29
 """Points of a net, and memory for their distances to all vertices."""
 
 
-SHARE, SMALL_NET, SHARES_OF_SMALL = 0.25, 100, (0.4, 0.65)
-"""Share of the time left that a net takes, and for the first and second one while it has fewer points than that: these
-are compared in no time."""
+SHARES, SMALL_NET, SHARES_OF_SMALL = (0.25, 0.33), 100, (0.4, 0.65)
+"""Shares of the time left that the first and the second net take, and while they have fewer points than that: these are
+compared in no time."""
 SHARE_OF_ALL = 0.08
 """Share of the time left in which all distances of a mesh must be known, or its net is compared: some thousand points
 take ten times as long to compare."""
@@ -82,8 +82,8 @@ class Sample:
 def samples_of(X: Any, Y: Any, clock: Clock) -> tuple[Sample, Sample]:
     """The samples of two spaces or meshes, in a share of the time."""
     samples: list[Sample] = []
-    for name, thing, of_small in zip("XY", (X, Y), SHARES_OF_SMALL, strict=True):
-        clocks = (clock.part(share * clock.left) for share in (SHARE, of_small, SHARE_OF_ALL))
+    for name, thing, *shares in zip("XY", (X, Y), SHARES, SHARES_OF_SMALL, strict=True):
+        clocks = (clock.part(share * clock.left) for share in (*shares, SHARE_OF_ALL))
         with naming(name):
             samples.append(sample_of(thing, *clocks))
     return samples[0], samples[1]

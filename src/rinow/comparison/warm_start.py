@@ -24,8 +24,9 @@ GAP, LARGEST_GAP, LEAST_GAP, RESET_GAP = 0.03, 0.25, 0.001, 0.02
 The share grows when the target is met, shrinks when it is missed, and starts anew.
 """
 
-STALL = 600
-"""Moves without progress before the search returns to its best maps and perturbs them."""
+STALL, STALL_OF_FEW = 600, 3000
+"""Moves without progress before the search returns to its best maps and perturbs them; where levels are few, so that
+every step down is a large one."""
 
 COINCIDENT = -1e3
 """Logarithm of distance 0: two such distances agree, and one of them with nothing else."""
@@ -42,6 +43,7 @@ class TabuSearch(ABC):
     """A tabu search from given maps; `best` is the least value measured so far, `pairs` its relation."""
 
     kind: int
+    _stall = STALL
 
     def __init__(self, DX: Floats, DY: Floats, X: Floats, Y: Floats, f: Indices, g: Indices, seed: int) -> None:
         self._DX, self._DY = DX, DY
@@ -71,11 +73,11 @@ class TabuSearch(ABC):
     def run(self, n_moves: int, clock: Clock, target: float = 0.0) -> None:
         """Make so many moves, unless the time is over or the target is met before."""
         end = self.moves + n_moves
-        block = min(STALL, max(32, 40_000_000 // (self._tabu.table.size + 1000)))
+        block = min(self._stall, max(32, 40_000_000 // (self._tabu.table.size + 1000)))
         while self.moves < end and self.best > target and not clock.over:
             if self._descend(min(block, end - self.moves)):
                 self._measure()
-            elif self._tabu.counters[correspondence_tabu.TOTAL_STALL] >= STALL:
+            elif self._tabu.counters[correspondence_tabu.TOTAL_STALL] >= self._stall:
                 self._perturb()
 
     def _level_below(self, level: float) -> float:
@@ -136,6 +138,7 @@ class RelationTabu(TabuSearch):
     def __init__(self, DX: Floats, DY: Floats, f: Indices, g: Indices, seed: int) -> None:
         self._scale = float(max(DX.max(), DY.max())) or 1.0
         self._levels = Levels(DX, DY)
+        self._stall = STALL_OF_FEW if self._levels.few else STALL
         super().__init__(DX, DY, DX / self._scale, DY / self._scale, f, g, seed)
 
     def _level_below(self, level: float) -> float:
