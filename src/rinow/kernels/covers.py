@@ -75,24 +75,22 @@ def cover(candidates, radii, sheet, centres):
 
 
 @parallel_kernel
-def link(places, sources, radii, starts, n_blocks, sheet, counts, links):
+def link(places, sources, radii, starts, sheet, counts, links):
     """Write the number of targets in the disc of each source, and their numbers to links[starts[i] : starts[i + 1]].
 
     places[v] is the number of the target at vertex v, or -1.
     """
-    n, size = len(sources), len(sheet.vertices)
-    for block in prange(n_blocks):
-        marks, members = np.zeros(size, np.int32), np.empty(size + 1, np.int32)
-        surface = (sheet.vertices, sheet.offsets, sheet.neighbours)
-        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            m, k, room = disc(sources[i], radii[i], i + 1, *surface, marks, members), 0, starts[i + 1] - starts[i]
-            for j in range(m):
-                target = places[members[j]]
-                if target >= 0:
-                    if k < room:
-                        links[starts[i] + k] = target
-                    k += 1
-            counts[i] = k
+    marks, members = np.zeros(len(sheet.vertices), np.int32), np.empty(len(sheet.vertices) + 1, np.int32)
+    surface = (sheet.vertices, sheet.offsets, sheet.neighbours)
+    for i in prange(len(sources)):
+        m, k, room = disc(sources[i], radii[i], i + 1, *surface, marks, members), 0, starts[i + 1] - starts[i]
+        for j in range(m):
+            target = places[members[j]]
+            if target >= 0:
+                if k < room:
+                    links[starts[i] + k] = target
+                k += 1
+        counts[i] = k
 
 
 @lean

@@ -91,12 +91,10 @@ def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work
 
 
 @parallel_kernel
-def treat_all(task, errors_of, reaches, most, n_blocks, centres, sheet, tables, frames, out):
+def treat_all(task, errors_of, reaches, most, centres, sheet, tables, frames, out):
     """Write rows of the tables, frames (n, 11) or values of patches for all centres."""
-    n = len(centres.vertices)
-    for block in prange(n_blocks):
-        ball, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(len(reaches))
-        work = Work(ball, fit, np.empty(len(reaches)), np.empty(TERMS[MAX_ORDER]))
-        values, gradients = np.empty((MAX_ORDER + 1, 2)), np.empty((MAX_ORDER + 1, 2, 3))
-        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients)
+    ball, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(len(reaches))
+    work = Work(ball, fit, np.empty(len(reaches)), np.empty(TERMS[MAX_ORDER]))
+    values, gradients = np.empty((MAX_ORDER + 1, 2)), np.empty((MAX_ORDER + 1, 2, 3))
+    for i in prange(len(centres.vertices)):
+        treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import bends, monge, nested_fits, stencils
-from rinow.kernels._jit import inlined, kernel, lean, parallel_kernel, prange
+from rinow.kernels._jit import inlined, lean, parallel_kernel, prange
 from rinow.kernels.nested_fits import ROOMY, TERMS
 from rinow.kernels.osculating_torus import arc_place, offset_forms, torus_frame
 from rinow.kernels.patch_fits import STEEP, curvature_and_gradients, forms_at_centre
@@ -213,20 +213,29 @@ def write_patch(start, stop, size, top, asked, reach, frame, patch, fit, sheet, 
     write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values)
 
 
-@kernel
-def add_values(vertices, values, totals):
-    """Add the values of patches to the totals of their vertices; the last total is of the squared deviations of K."""
-    last = values.shape[1]
-    for i in range(len(vertices)):
-        v = vertices[i]
-        if v < 0:
-            continue
-        weight, more = totals[v, 0], values[i, 0]
-        if weight > 0.0 and more > 0.0:
-            apart = values[i, 1] / more - totals[v, 1] / weight
-            totals[v, last] += weight * more / (weight + more) * apart * apart
-        for k in range(last):
-            totals[v, k] += values[i, k]
+@lean
+def add_row(i, values, v, totals):
+    """Add row i of the values to the totals of vertex v."""
+    last, weight, more = values.shape[1], totals[v, 0], values[i, 0]
+    if weight > 0.0 and more > 0.0:
+        apart = values[i, 1] / more - totals[v, 1] / weight
+        totals[v, last] += weight * more / (weight + more) * apart * apart
+    for k in range(last):
+        totals[v, k] += values[i, k]
+
+
+@parallel_kernel
+def add_values(vertices, values, n_blocks, totals):
+    """Add the values of patches to the totals of their vertices; the last total is of the squared deviations of K.
+
+    Each block of vertices looks through all values for its own, so that they are added in their order.
+    """
+    n = len(totals)
+    for block in prange(n_blocks):
+        first, last = n * block // n_blocks, n * (block + 1) // n_blocks
+        for i in range(len(vertices)):
+            if first <= vertices[i] < last:
+                add_row(i, values, vertices[i], totals)
 
 
 @parallel_kernel
