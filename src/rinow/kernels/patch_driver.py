@@ -77,15 +77,15 @@ def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work
         for t in range(start + len(own), stop):
             patch_fits.write_no_row(t, tables)
     elif asked >= 2:
-        nested_fits.place_origin(ball.points, size, own[0], fit)
+        nested_fits.place_origin(ball.points, size, own[-1], fit)
         nested_fits.add_moments(ball.points, size, own, asked, fit)
-        top = nested_fits.fit_orders(0, own[0], asked, fit)
+        top = nested_fits.fit_orders(len(own) - 1, own[-1], asked, fit)  # a 0 would be compiled by itself
         if task == FRAMES and top >= 2:
             patches.write_frame(fit.jets[top], spacing, frame, frames[i])
         elif top >= 2:
             patch = patches.Patch(out.cores[i], centres.noise[i], out.risks[i], out.power, order)
             patches.write_patch(
-                start, stop, size, top, asked, own[0], frame, patch, fit, sheet, ball, work.coefficients,
+                start, stop, size, top, asked, own[-1], frame, patch, fit, sheet, ball, work.coefficients,
                 out.vertices, out.values,
             )  # fmt: skip
 

@@ -35,7 +35,7 @@ def fit_jets(points, n, work):
                     offsets[b, a] += w * x
                 x *= u
             y *= v
-    return nested_fits.fit_orders(0, 1.0, nested_fits.highest_order(n + 1, HIGH), work)
+    return nested_fits.fit_orders(len(work.counts) - 1, 1.0, nested_fits.highest_order(n + 1, HIGH), work)
 
 
 @lean
