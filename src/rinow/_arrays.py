@@ -19,9 +19,11 @@ __all__ = [
     "as_indices",
     "as_points",
     "as_quadruples",
+    "bounding_box",
     "in_safe_unit",
     "in_unit",
     "read_only",
+    "rows_are_finite",
 ]
 
 Floats = NDArray[np.float64]
@@ -46,6 +48,20 @@ def as_floats(values: ArrayLike, name: str) -> Floats:
     if array.dtype.kind not in "fiu":
         raise InvalidInputError(f"{name} has type {array.dtype}; give real numbers.")
     return np.ascontiguousarray(array, np.float64) if array.ndim else np.asarray(array, np.float64)
+
+
+def rows_are_finite(rows: Floats) -> NDArray[np.bool_]:
+    """(n,): all numbers of a row of an (n, m) array are finite; by columns, for reductions of short rows are slow."""
+    finite = np.ones(len(rows), np.bool_)
+    for column in rows.T:
+        finite &= np.isfinite(column)
+    return finite
+
+
+def bounding_box(points: Floats) -> tuple[Floats, Floats]:
+    """Least and greatest coordinates of points (n, d); inf and -inf without any."""
+    low = [column.min(initial=np.inf) for column in points.T]
+    return np.array(low), np.array([column.max(initial=-np.inf) for column in points.T])
 
 
 def as_number(value: Any, name: str) -> float:

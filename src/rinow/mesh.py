@@ -12,7 +12,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
-from rinow._arrays import as_floats, as_index_tuples, as_points, in_safe_unit, in_unit, read_only
+from rinow._arrays import (
+    as_floats,
+    as_index_tuples,
+    as_points,
+    bounding_box,
+    in_safe_unit,
+    in_unit,
+    read_only,
+    rows_are_finite,
+)
 from rinow.errors import InvalidInputError, InvalidMeshError
 from rinow.kernels import triangles
 from rinow.polyhedral_surface import PolyhedralSurface
@@ -158,7 +167,7 @@ class TriangleMesh(PolyhedralSurface):
     @cached_property
     def vertex_is_finite(self) -> NDArray[np.bool_]:
         """(n_vertices,): all three coordinates are finite."""
-        return read_only(np.asarray(np.isfinite(self.vertices).all(axis=1)))
+        return read_only(rows_are_finite(self.vertices))
 
     @cached_property
     def outward_flips(self) -> NDArray[np.bool_]:
@@ -187,8 +196,10 @@ class TriangleMesh(PolyhedralSurface):
     def diagonal(self) -> float:
         """Length of the diagonal of the bounding box of the finite vertices; 0 without any."""
         V, exponent = self._safe_vertices
-        V = V[self.vertex_is_finite]
-        return float(in_unit(np.linalg.norm(V.max(axis=0) - V.min(axis=0)), exponent)) if len(V) else 0.0
+        if not self.vertex_is_finite.all():
+            V = V[self.vertex_is_finite]
+        low, high = bounding_box(V)
+        return float(in_unit(np.linalg.norm(high - low), exponent)) if len(V) else 0.0
 
     def intrinsic(self) -> IntrinsicMesh:
         """The same surface, its positions forgotten."""

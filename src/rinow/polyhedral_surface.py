@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow import tolerances
-from rinow._arrays import in_safe_unit, in_unit, read_only
+from rinow._arrays import in_safe_unit, in_unit, read_only, rows_are_finite
 from rinow._printing import OneLine
 from rinow.kernels import triangles
 from rinow.topology import Topology
@@ -43,7 +43,7 @@ class PolyhedralSurface(OneLine):
         """Adjacency of the faces that take part."""
         F = self.faces
         distinct = (F[:, 0] != F[:, 1]) & (F[:, 1] != F[:, 2]) & (F[:, 2] != F[:, 0])
-        return Topology(F, self.n_vertices, read_only(distinct & np.isfinite(self.edge_lengths).all(axis=1)))
+        return Topology(F, self.n_vertices, read_only(distinct & rows_are_finite(self.edge_lengths)))
 
     @property
     def n_faces(self) -> int:

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.sheet import sorted_by
-from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers
 
 __all__ = ["CORE", "cover", "flat_frames", "members_of_discs", "sizes_of_discs", "turns"]
@@ -77,7 +76,7 @@ def _linked(
 ) -> tuple[Ints, Ints]:
     """How many targets are in the disc of each source, and those that fit into rows from `starts` on."""
     counts, links = np.empty(len(sources), np.int32), np.empty(starts[-1], np.int32)
-    covers.link(places, sources, radii * sheet.spacing[sources], starts, N_BLOCKS, sheet, counts, links)
+    covers.link(places, sources, radii * sheet.spacing[sources], starts, sheet, counts, links)
     return counts, links
 
 

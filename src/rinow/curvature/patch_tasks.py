@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
-from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, patch_driver, patch_fits, patches
 from rinow.kernels.nested_fits import N_ORDERS
 
@@ -20,8 +19,10 @@ __all__ = ["Tasks", "add_patches", "fill_tables", "fit_frames"]
 Floats = NDArray[np.float64]
 
 CENTRES_PER_TASK = 1 << 16
-VALUES_PER_TASK = 400_000
-"""Values of patches at vertices that are kept at a time."""
+VALUES_PER_TASK = 200_000
+"""Values of patches at vertices that are kept at a time: the memory of more than 32 MiB is never used twice."""
+ADDING = 8
+"""Pieces that vertices are cut into when values are added."""
 NO_FRAMES = np.empty((0, 11))
 NO_PATCHES = patch_driver.Patches(np.empty(0), np.empty(0), 0.0, np.empty(0, np.int32), np.empty((0, patches.N_VALUES)))
 
@@ -63,9 +64,7 @@ class Fitting:
             c.vertices[part], c.frames[part], c.low[part], c.high[part], c.factors[part], c.orders[part], rows,
             c.noise[part], c.curvedness[part],
         )  # fmt: skip
-        patch_driver.treat_all(
-            self.task, self.errors_of, self.reaches, self.most, N_BLOCKS, own, self.sheet, tables, frames, out
-        )
+        patch_driver.treat_all(self.task, self.errors_of, self.reaches, self.most, own, self.sheet, tables, frames, out)
 
 
 def fill_tables(fitting: Fitting, known: bool, tasks: Tasks, share: float) -> patch_fits.Tables:
@@ -112,7 +111,7 @@ def add_patches(
         parts.append(slice(first, min(max(last, first + 1), len(cores))))
         first = parts[-1].stop
     for _, (vertices, values) in tasks.run(partial(_values_of, fitting, cores, risks, power), parts, share):
-        patches.add_values(vertices, values, totals)
+        patches.add_values(vertices, values, ADDING, totals)
         del vertices, values
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._arrays import bounding_box
 from rinow.curvature.stencils import local_spacing, stencil_surface
 from rinow.kernels import balls, patch_order, stencils
 from rinow.mesh import TriangleMesh
@@ -37,14 +38,14 @@ def patch_sheet(mesh: TriangleMesh, left_out: NDArray[np.bool_] | None = None) -
     rank = np.full(mesh.n_vertices, -1, np.int32)
     rank[index] = np.arange(len(index), dtype=np.int32)
     offsets, neighbours = _rows(t.neighbour_offsets, t.neighbours, index, rank)
-    place = mesh.vertices[index], normals[index]
+    place = mesh.vertices.take(index, axis=0), normals.take(index, axis=0)  # twice as fast as by brackets
     return balls.Sheet(*place, offsets, neighbours, spacing[index], t.is_orientable), index
 
 
 def morton_order(points: NDArray[np.float64]) -> NDArray[np.int32]:
     """An order of points that keeps near ones together."""
-    low = points.min(axis=0, initial=np.inf)
-    size = max(float((points - low).max(initial=0.0)), np.finfo(float).tiny)
+    low, high = bounding_box(points)
+    size = max(float((high - low).max()), np.finfo(float).tiny)
     codes = np.empty(len(points), np.uint32)
     patch_order.morton_codes(points, low, size, codes)
     return sorted_by(codes)

@@ -1,7 +1,9 @@
 """One compilation policy for all kernels.
 
 A scalar kernel that only kernels call is `inner`: the code that makes Python objects numbers and arrays is left out,
-which for named tuples of many arrays takes longer to compile than the kernel itself.  A driver is a `parallel_kernel`.
+which for named tuples of many arrays takes longer to compile than the kernel itself.  If it makes no array it is
+`lean`: numba then does not count who has the arrays it looks at, which takes a locked addition for each row of a loop.
+A driver is a `parallel_kernel`.
 """
 
 import warnings
@@ -12,7 +14,7 @@ from numba import prange
 from rinow.kernels import _notice
 from rinow.kernels._parallel import Parallel
 
-__all__ = ["inlined", "inner", "kernel", "parallel_kernel", "prange"]
+__all__ = ["inlined", "inner", "kernel", "lean", "parallel_kernel", "prange"]
 
 
 def can_keep(function):
@@ -39,9 +41,9 @@ inlined = numba.njit(**POLICY, inline="always")
 """For formulas in loops over many points: written in place of their calls, for loops with calls stay scalar code."""
 
 
-def inner(function):
+def inner(function, **options):
     """Compile a kernel for kernels; Python can call it too, but compiles a caller for it first."""
-    compiled = numba.njit(**POLICY, no_cpython_wrapper=True)(function)
+    compiled = numba.njit(**POLICY, no_cpython_wrapper=True, **options)(function)
     if numba.config.DISABLE_JIT:
         return compiled
 
@@ -57,6 +59,11 @@ def inner(function):
     compiled._insert = lambda *entry, **options: None
     compiled._compile_for_args = from_python
     return compiled
+
+
+def lean(function):
+    """Compile an inner kernel that makes no array; numba refuses one that does."""
+    return inner(function, _nrt=False)
 
 
 def parallel_kernel(function):

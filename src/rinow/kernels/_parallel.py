@@ -2,7 +2,8 @@
 
 Numba's own parallel loops do the same, but take three times as long to compile: each becomes several functions with
 all arrays taken apart, and everything it calls is compiled into each of them.  Here a loop is compiled once, for a part
-of its range, and threads without the lock of Python run the parts.
+of its range, and threads without the lock of Python run the parts.  What stands before the loop is done for each part:
+arrays that are made there are work space of one thread.
 """
 
 import ast

@@ -5,7 +5,7 @@ Corner c = 3 f + k is corner k of face f.  The same number names the half-edge f
 
 import numpy as np
 
-from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
+from rinow.kernels._jit import inner, kernel, lean, parallel_kernel, prange
 
 BOUNDARY = -1
 """Partner of a half-edge whose edge has one face."""
@@ -17,13 +17,13 @@ MANY_CORNERS = 48
 """Above this number of corners at a vertex, sorting them is faster than comparing all pairs."""
 
 
-@inner
+@lean
 def next_corner(c):
     """The corner after c in its face."""
     return c + 1 if c % 3 < 2 else c - 2
 
 
-@inner
+@lean
 def previous_corner(c):
     """The corner before c in its face."""
     return c - 1 if c % 3 > 0 else c + 2
@@ -69,7 +69,7 @@ def edges_of_halfedges(offsets, corners, after, before, partners, first):
             join_few(v, corners[start:stop], after[start:stop], before[start:stop], partners, first)
 
 
-@inner
+@lean
 def join_few(v, corners, after, before, partners, first):
     """Join the half-edges between v and each greater vertex w by looking through all corners at v."""
     for i in range(2 * corners.shape[0]):
@@ -118,14 +118,14 @@ def ends_in_order(after, before):
     return keys
 
 
-@inner
+@lean
 def end_of(i, corners, after, before):
     """Other vertex and number of the i-th half-edge at a vertex: first those that leave it, then those that arrive."""
     n = corners.shape[0]
     return (after[i], corners[i]) if i < n else (before[i - n], previous_corner(corners[i - n]))
 
 
-@inner
+@lean
 def corner_across(c, side, v, faces, partners):
     """The corner at vertex v in the face across the edge after (side 0) or before (side 1) corner c, or -1."""
     h = c if side == 0 else previous_corner(c)
@@ -135,7 +135,7 @@ def corner_across(c, side, v, faces, partners):
     return g if faces[g // 3, g % 3] == v else next_corner(g)
 
 
-@inner
+@lean
 def fan_size(v, faces, offsets, corners, partners):
     """Number of corners at v that are joined to its first one by edges with exactly two faces."""
     start = corners[offsets[v]]
@@ -198,7 +198,7 @@ def vertex_components(faces, face_used, n_vertices):
     return labels, count
 
 
-@inner
+@lean
 def _root(parent, v):
     """Representative of v, halving the path to it."""
     while parent[v] != v:
@@ -207,7 +207,7 @@ def _root(parent, v):
     return v
 
 
-@inner
+@lean
 def all_agree(faces, partners):
     """Whether the half-edges of each edge with two faces run against each other."""
     for h in range(partners.shape[0]):

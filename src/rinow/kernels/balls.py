@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import monge
-from rinow.kernels._jit import inner, parallel_kernel, prange
+from rinow.kernels._jit import inner, lean, parallel_kernel, prange
 from rinow.kernels.osculating_torus import LARGEST_TURN, torus_coordinates
 
 HUB = 100
@@ -57,7 +57,7 @@ def ball(n_vertices, most):
     )
 
 
-@inner
+@lean
 def find_unseen(members, first, last, epoch, offsets, neighbours, marks, candidates):
     """Write the unseen neighbours of some members to the candidates; how many.
 
@@ -76,7 +76,7 @@ def find_unseen(members, first, last, epoch, offsets, neighbours, marks, candida
     return count
 
 
-@inner
+@lean
 def keep_near(count, v, spacing, reach, vertices, normals, candidates, raw):
     """Keep the candidates not farther than `reach` from v, and write positions and normals; how many."""
     px, py, pz = vertices[v, 0], vertices[v, 1], vertices[v, 2]
@@ -92,7 +92,7 @@ def keep_near(count, v, spacing, reach, vertices, normals, candidates, raw):
     return kept
 
 
-@inner
+@lean
 def judge(count, frame, spacing, is_oriented, raw):
     """Replace the candidates' positions by torus coordinates; the squared distance, or inf for another sheet."""
     nx, ny, nz = frame[0], frame[1], frame[2]
@@ -113,7 +113,7 @@ def judge(count, frame, spacing, is_oriented, raw):
         raw[0, i], raw[1, i], raw[2, i], raw[3, i] = u, v, w, (rho2 + w * w if inside else np.inf)
 
 
-@inner
+@lean
 def grow(v, frame, reach, epoch, sheet, work):
     """Write the members of the ball of `reach` spacings about v and their coordinates in spacings; how many.
 

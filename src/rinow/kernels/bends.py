@@ -1,11 +1,11 @@
 """How well a fit fixes second derivatives beside its centre: the variances of them that noise of variance 1 causes."""
 
-from rinow.kernels._jit import inlined, inner
+from rinow.kernels._jit import inlined, lean
 from rinow.kernels.eliminations import AT_ONCE, LANES, subtract_beside, subtract_earlier
 from rinow.kernels.nested_fits import COLUMNS, DEGREES, TERMS, V_POWERS
 
 
-@inner
+@lean
 def write_monomials(points, size, core, reach, last, work):
     """Write the monomials of degree up to `last` at the points of the core, one column each; how many columns.
 
@@ -38,14 +38,14 @@ def write_bends(k, n, work):
         row[j], row[n + j], row[2 * n + j] = uu * x[j], uv * y[j], vv * z[j]
 
 
-@inner
+@lean
 def bend_variances(points, size, core, reach, order, work):
     """Write to `work.bends` the summed variances of the second derivatives of a fit, for noise of variance 1.
 
     They are those at the points of a ball of at most PLACES that are nearer than `core` to its centre, in their order.
     """
     n = write_monomials(points, size, core, reach, order - 2, work)
-    columns, squares, factor, flat = work.columns, work.squares_of_columns, work.factor, work.columns.ravel()
+    columns, squares, factor, flat = work.columns, work.squares_of_columns, work.factor, work.columns.reshape(-1)
     width = (3 * n + LANES - 1) // LANES * LANES
     columns[: TERMS[1], :width] = 0.0
     squares[:width] = 0.0

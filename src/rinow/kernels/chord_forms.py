@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from rinow.kernels._jit import inner, parallel_kernel, prange
+from rinow.kernels._jit import lean, parallel_kernel, prange
 from rinow.kernels.development import fan_angle, is_member, lay_out_fan
 from rinow.kernels.smoothing import CAPACITY, FULL_TURN, develop_ball
 
@@ -21,7 +21,7 @@ PIVOT = 1e-10
 """A column depends on earlier ones when this share of its square is left: rounding of squares."""
 
 
-@inner
+@lean
 def harmonics(x, y, row):
     """Write 1, cos 2θ, sin 2θ, cos 4θ, sin 4θ of the direction (x, y), which is not 0."""
     square = x * x + y * y
@@ -29,7 +29,7 @@ def harmonics(x, y, row):
     row[0], row[1], row[2], row[3], row[4] = 1.0, cos, sin, cos * cos - sin * sin, 2.0 * cos * sin
 
 
-@inner
+@lean
 def turn_form(form, cos, sin, mirror, out):
     """Write a form as seen in another frame, in which its axis has the direction (cos, sin); `mirror` is 1 or -1."""
     c, s = cos * cos - sin * sin, 2.0 * cos * sin
@@ -40,7 +40,7 @@ def turn_form(form, cos, sin, mirror, out):
     out[3], out[4] = c * form[3] - s * d, s * form[3] + c * d
 
 
-@inner
+@lean
 def add_edge(derivative, length, x, y, row, out):
     """Add the change of defect over area when the edge of direction (x, y) is longer by c³/24 times each harmonic."""
     if x != 0.0 or y != 0.0:
@@ -77,7 +77,7 @@ def chord_terms(curvatures, areas, metric, rings, n_blocks, terms, spokes):
                 spokes[i, 0], spokes[i, 1] = (x / length, y / length) if length > 0.0 else (0.0, 0.0)
 
 
-@inner
+@lean
 def add_corner(c, curvature, area, n, metric, members, slots, points, row, out):
     """Add the terms of one face of the star laid out in `points`."""
     f, k = c // 3, c % 3
@@ -132,7 +132,7 @@ def fit_forms(radii, curvatures, areas, terms, spokes, is_fan, metric, rings, n_
             forms[v] = row[N_POLY:N]
 
 
-@inner
+@lean
 def normal_equations(n, radius, data, rings, members, slots, points, row, gram):
     """Write the upper triangle of the sums of products of unknowns and data, weighted; the number of data."""
     curvatures, areas, terms, spokes = data
@@ -159,7 +159,7 @@ def normal_equations(n, radius, data, rings, members, slots, points, row, gram):
     return count
 
 
-@inner
+@lean
 def axis_of(m, n, spokes, rings, members, slots, points):
     """Direction of the axis of the frame of member m, 1 or -1 if mirrored; 0 if none of its neighbours is a member.
 
@@ -184,7 +184,7 @@ def axis_of(m, n, spokes, rings, members, slots, points):
     return (x / length, y / length, mirror) if length > 0.0 else (0.0, 0.0, 0.0)
 
 
-@inner
+@lean
 def eliminate(a, first, last):
     """Turn rows of the upper triangle into rows of its Cholesky factor, 0 for dependent unknowns; how many are not.
 
@@ -208,7 +208,7 @@ def eliminate(a, first, last):
     return rank
 
 
-@inner
+@lean
 def substitute(factor, solution):
     """Write the unknowns of an eliminated system, 0 for dependent ones."""
     for i in range(N - 1, -1, -1):

@@ -5,13 +5,13 @@ import math
 import numpy as np
 
 from rinow.kernels import stencils
-from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
+from rinow.kernels._jit import kernel, lean, parallel_kernel, prange
 
 QUANTA = 2.0**26
 """Steps in a shape ratio of 1: far above rounding, so that motions change no key, and below chance coincidence."""
 
 
-@inner
+@lean
 def mixed(x):
     """A hash of a 64-bit number (the finaliser of splitmix64)."""
     x = np.uint64(x)
@@ -33,7 +33,7 @@ def shape_keys(vertices, offsets, neighbours, out):
         out[v] = np.uint32(mixed(np.uint64(ratio * QUANTA + 0.37)) >> np.uint64(32))
 
 
-@inner
+@lean
 def disc(v, radius, epoch, vertices, offsets, neighbours, marks, members):
     """Write the vertices within a distance of v, reached over such vertices, to members (n + 1,); how many.
 
@@ -75,27 +75,25 @@ def cover(candidates, radii, sheet, centres):
 
 
 @parallel_kernel
-def link(places, sources, radii, starts, n_blocks, sheet, counts, links):
+def link(places, sources, radii, starts, sheet, counts, links):
     """Write the number of targets in the disc of each source, and their numbers to links[starts[i] : starts[i + 1]].
 
     places[v] is the number of the target at vertex v, or -1.
     """
-    n, size = len(sources), len(sheet.vertices)
-    for block in prange(n_blocks):
-        marks, members = np.zeros(size, np.int32), np.empty(size + 1, np.int32)
-        surface = (sheet.vertices, sheet.offsets, sheet.neighbours)
-        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            m, k, room = disc(sources[i], radii[i], i + 1, *surface, marks, members), 0, starts[i + 1] - starts[i]
-            for j in range(m):
-                target = places[members[j]]
-                if target >= 0:
-                    if k < room:
-                        links[starts[i] + k] = target
-                    k += 1
-            counts[i] = k
+    marks, members = np.zeros(len(sheet.vertices), np.int32), np.empty(len(sheet.vertices) + 1, np.int32)
+    surface = (sheet.vertices, sheet.offsets, sheet.neighbours)
+    for i in prange(len(sources)):
+        m, k, room = disc(sources[i], radii[i], i + 1, *surface, marks, members), 0, starts[i + 1] - starts[i]
+        for j in range(m):
+            target = places[members[j]]
+            if target >= 0:
+                if k < room:
+                    links[starts[i] + k] = target
+                k += 1
+        counts[i] = k
 
 
-@inner
+@lean
 def steps_between(sample, vertex, rung):
     """Steps of the ladder by which a radius in spacings of a sample is farther up in spacings of a vertex."""
     return math.floor(math.log(sample / vertex) / rung + 0.5)
@@ -119,7 +117,7 @@ def windows(starts, samples, radius, order, noise, spacing, at_samples, rung, n_
         sigma2[v] = math.exp(total / count) if count else 0.0
 
 
-@inner
+@lean
 def sum_logs(rows, logs, shifts, totals, counts):
     """Write the sums of those rows of logs (m, k) that have a value in a column, and how many there are.
 

@@ -1,15 +1,15 @@
 """The arcs that the edges of a mesh stand for."""
 
-from rinow.kernels._jit import inner, parallel_kernel, prange
+from rinow.kernels._jit import lean, parallel_kernel, prange
 
 
-@inner
+@lean
 def haantjes_lift(chord, curvature):
     """Length c (1 + (kappa c)^2 / 24) of the arc of curvature kappa over a chord c, up to O(kappa^4 c^5)."""
     return chord * (1.0 + (curvature * chord) ** 2 / 24.0)
 
 
-@inner
+@lean
 def edge_curvature(vertices, normals, i, j):
     """Turning of the normal along an edge: (n_j - n_i).(p_j - p_i)/c^2, its mean normal curvature.
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rinow.kernels._jit import inner
+from rinow.kernels._jit import lean
 
 
 class PrincipalFrames(NamedTuple):
@@ -18,19 +18,19 @@ class PrincipalFrames(NamedTuple):
     normals: np.ndarray
 
 
-@inner
+@lean
 def cross(a, b):
     """Vector product."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@inner
+@lean
 def combination(s, a, t, b):
     """The vector s a + t b."""
     return s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]
 
 
-@inner
+@lean
 def some_tangent(normal):
     """A unit vector orthogonal to a unit normal, without a branch (Duff et al. 2017)."""
     x, y, z = normal
@@ -39,7 +39,7 @@ def some_tangent(normal):
     return 1.0 + s * x * x * a, s * x * y * a, -s * x
 
 
-@inner
+@lean
 def graph_frame(f1, f2, tangent, normal):
     """Orthonormal tangents, the first over `tangent`, and normal of a graph with slopes f1, f2 along it and across."""
     e = math.sqrt(1.0 + f1 * f1)
@@ -50,7 +50,7 @@ def graph_frame(f1, f2, tangent, normal):
     return t, cross(n, t), n
 
 
-@inner
+@lean
 def shape_operator(f1, f2, f11, f12, f22):
     """Entries S11, S12, S22 in the tangents of `graph_frame`.
 
@@ -63,7 +63,7 @@ def shape_operator(f1, f2, f11, f12, f22):
     return -f11 / (w * e), -(f12 - t * f11) / w2, -(f22 - 2.0 * t * f12 + t * t * f11) * e / (w * w2)
 
 
-@inner
+@lean
 def write_principal_frame(row, coefficients, unit, tangent, normal, frames):
     """Diagonalise the shape operator of the graph c0 x + c1 y + c2 x^2 + c3 x y + c4 y^2 + ..., x along `tangent`."""
     f1, f2 = coefficients[0], coefficients[1]
@@ -80,7 +80,7 @@ def write_principal_frame(row, coefficients, unit, tangent, normal, frames):
         frames.direction1[row, k], frames.direction2[row, k], frames.normals[row, k] = p[k], q[k], n[k]
 
 
-@inner
+@lean
 def write_no_frame(row, normal, frames):
     """Write nan for a vertex without a fit, and its normal."""
     frames.k1[row] = frames.k2[row] = np.nan

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rinow.kernels._jit import inlined, inner
+from rinow.kernels._jit import inlined, inner, lean
 from rinow.kernels.eliminations import AT_ONCE, LANES, subtract_beside, subtract_earlier
 
 MAX_ORDER = 8
@@ -46,12 +46,14 @@ class Fits(NamedTuple):
     """Work space of one thread.
 
     moments[ball, b, a] and offsets[ball, b, a] are the sums of u^a v^b and of w u^a v^b, `sums` and `offset_sums` those
-    of one ball by degree, u and v being counted from `origin`.  Of the points still to be added `powers` has u^a and
-    `places` has v and w.  targets[i] are value and derivatives f1, f2, f11/2, f12, f22/2 of a monomial at the centre.
-    `monomials`, `columns`, their squares and `bends` serve points beside it, of balls of at most PLACES points.
+    of one ball by degree, u and v being counted from `origin`; `shifts` are powers of its coordinates.  Of the points
+    still to be added `powers` has u^a and `places` has v and w.  targets[i] are value and derivatives f1, f2, f11/2,
+    f12, f22/2 of a monomial at the centre.  `monomials`, `columns`, their squares and `bends` serve points beside it,
+    of balls of at most PLACES points.
     """
 
     origin: np.ndarray
+    shifts: np.ndarray
     targets: np.ndarray
 
     moments: np.ndarray
@@ -79,6 +81,7 @@ def fits(n_shells):
     p = TERMS[MAX_ORDER]
     return Fits(
         np.zeros(2),
+        np.ones((2, MAX_ORDER + 1)),
         np.eye(p, 6),
         np.zeros((n_shells, WIDTH + 1, MOMENTS)),
         np.zeros((n_shells, MAX_ORDER + 2, OFFSETS)),
@@ -99,7 +102,7 @@ def fits(n_shells):
     )
 
 
-@inner
+@lean
 def place_origin(points, n, reach, work):
     """Count u and v from the mean of the points of one ball if it is one-sided, else from its centre; whether it is."""
     u = v = count = 0.0
@@ -111,8 +114,7 @@ def place_origin(points, n, reach, work):
     if not one_sided and work.origin[0] == 0.0 and work.origin[1] == 0.0:
         return False  # the targets are at hand
     work.origin[0], work.origin[1] = (u, v) if one_sided else (0.0, 0.0)
-    px, py = np.zeros(MAX_ORDER + 1), np.zeros(MAX_ORDER + 1)
-    px[0] = py[0] = 1.0
+    px, py = work.shifts[0], work.shifts[1]
     for k in range(1, MAX_ORDER + 1):
         px[k], py[k] = -px[k - 1] * work.origin[0] / reach, -py[k - 1] * work.origin[1] / reach
     for i in range(TERMS[MAX_ORDER]):
@@ -149,14 +151,14 @@ def add_points(powers, places, order, moments, offsets):
     add_products(w, powers, places, order, offsets, OFFSETS)
 
 
-@inner
+@lean
 def add_all(terms, sums):
     """Add one flat array to another; as a sum of arrays this compiles code for messages about their shapes."""
     for i in range(len(sums)):
         sums[i] += terms[i]
 
 
-@inner
+@lean
 def add_moments(points, n, reaches, order, work):
     """Write the moments and offsets of each ball, the number of its points and the sum of w^2."""
     n_shells, top = len(reaches), 2 * order + 1
@@ -194,7 +196,7 @@ def add_moments(points, n, reaches, order, work):
             add_all(offsets[shell - 1], offsets[shell])
 
 
-@inner
+@lean
 def highest_order(count, order):
     """The highest order not above the given one that `count` points admit; 1 for none."""
     while order > 1 and (count < TERMS[order] + SPARE or (order > 2 and count < SURPLUS * TERMS[order])):
@@ -223,7 +225,7 @@ def write_equation(i, order, work):
     row[p + 6] = work.offset_sums[SUMS[i]]
 
 
-@inner
+@lean
 def fit_orders(shell, reach, order, work):
     """Fit all orders up to `order`; return the highest complete one.
 
@@ -233,7 +235,7 @@ def fit_orders(shell, reach, order, work):
     """
     sort_by_degree(work.moments[shell], reach, 2 * order, work.sums)
     sort_by_degree(work.offsets[shell], reach, order, work.offset_sums)
-    factor, p, flat = work.factor, TERMS[order], work.factor.ravel()
+    factor, p, flat = work.factor, TERMS[order], work.factor.reshape(-1)
     c0 = c1 = c2 = c3 = c4 = c5 = v33 = v34 = v35 = v44 = v45 = v55 = 0.0
     left = work.squares[shell]
     degree = 0
@@ -270,7 +272,7 @@ def fit_orders(shell, reach, order, work):
     return order
 
 
-@inner
+@lean
 def coefficients(order, top, work, out):
     """Write the coefficients, in coordinates over the reach, of an order of the factorisation made for `top`."""
     p, n, factor = TERMS[top], TERMS[order], work.factor

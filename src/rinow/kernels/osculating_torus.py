@@ -9,7 +9,7 @@ circle is w = 0.
 
 import math
 
-from rinow.kernels._jit import inlined, inner
+from rinow.kernels._jit import inlined, lean
 
 LARGEST_TURN = math.cos(1.9)
 """Cosine of the largest angle of either arc."""
@@ -76,7 +76,7 @@ def offset_forms(place, k1, k2, f, f1, f2, f11, f12, f22):
     return g11, g12, g22, l / volume, m / volume, n / volume, volume
 
 
-@inner
+@lean
 def torus_frame(cos1, sin1, cos2, sin2):
     """Components in (d1, d2, n) of the two arc directions and the normal of the torus."""
     return (cos1, 0.0, sin1), (-sin1 * sin2, cos2, cos1 * sin2), (-sin1 * cos2, -sin2, cos1 * cos2)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import balls, nested_fits, patch_fits, patches
-from rinow.kernels._jit import inner, parallel_kernel, prange
+from rinow.kernels._jit import lean, parallel_kernel, prange
 from rinow.kernels.nested_fits import MAX_ORDER, TERMS
 
 TABLES, FRAMES, VALUES = 0, 1, 2
@@ -43,14 +43,15 @@ class Patches(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Work space of one thread."""
+    """Work space of one thread: beside a ball and its fits the radii and the coefficients of those of one centre."""
 
     ball: balls.Ball
     fit: nested_fits.Fits
+    reaches: np.ndarray
     coefficients: np.ndarray
 
 
-@inner
+@lean
 def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients):
     """Grow the balls about one centre, fit, and write what the task asks for."""
     ball, fit = work.ball, work.fit
@@ -63,7 +64,9 @@ def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work
         out.vertices[start:stop] = -1
     if order < 2:
         return
-    own = reaches[centres.low[i] : centres.high[i] + 1] * centres.factors[i]
+    own = work.reaches[: centres.high[i] + 1 - centres.low[i]]
+    for k in range(len(own)):
+        own[k] = reaches[centres.low[i] + k] * centres.factors[i]
     size = balls.grow(v, frame, own[-1], i + 1, sheet, ball)
     asked = order + 1 if task == VALUES and order % 2 == 0 and order < MAX_ORDER else order
     asked = nested_fits.highest_order(size, asked)
@@ -74,26 +77,24 @@ def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work
         for t in range(start + len(own), stop):
             patch_fits.write_no_row(t, tables)
     elif asked >= 2:
-        nested_fits.place_origin(ball.points, size, own[0], fit)
+        nested_fits.place_origin(ball.points, size, own[-1], fit)
         nested_fits.add_moments(ball.points, size, own, asked, fit)
-        top = nested_fits.fit_orders(0, own[0], asked, fit)
+        top = nested_fits.fit_orders(len(own) - 1, own[-1], asked, fit)  # a 0 would be compiled by itself
         if task == FRAMES and top >= 2:
             patches.write_frame(fit.jets[top], spacing, frame, frames[i])
         elif top >= 2:
             patch = patches.Patch(out.cores[i], centres.noise[i], out.risks[i], out.power, order)
             patches.write_patch(
-                start, stop, size, top, asked, own[0], frame, patch, fit, sheet, ball, work.coefficients,
+                start, stop, size, top, asked, own[-1], frame, patch, fit, sheet, ball, work.coefficients,
                 out.vertices, out.values,
             )  # fmt: skip
 
 
 @parallel_kernel
-def treat_all(task, errors_of, reaches, most, n_blocks, centres, sheet, tables, frames, out):
+def treat_all(task, errors_of, reaches, most, centres, sheet, tables, frames, out):
     """Write rows of the tables, frames (n, 11) or values of patches for all centres."""
-    n = len(centres.vertices)
-    for block in prange(n_blocks):
-        ball, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(len(reaches))
-        work = Work(ball, fit, np.empty(TERMS[MAX_ORDER]))
-        values, gradients = np.empty((MAX_ORDER + 1, 2)), np.empty((MAX_ORDER + 1, 2, 3))
-        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients)
+    ball, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(len(reaches))
+    work = Work(ball, fit, np.empty(len(reaches)), np.empty(TERMS[MAX_ORDER]))
+    values, gradients = np.empty((MAX_ORDER + 1, 2)), np.empty((MAX_ORDER + 1, 2, 3))
+    for i in prange(len(centres.vertices)):
+        treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients)

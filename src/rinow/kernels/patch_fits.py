@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import nested_fits
-from rinow.kernels._jit import inner
+from rinow.kernels._jit import lean
 from rinow.kernels.nested_fits import N_ORDERS
 from rinow.kernels.osculating_torus import offset_forms
 
@@ -38,13 +38,13 @@ class Tables(NamedTuple):
     noise: np.ndarray
 
 
-@inner
+@lean
 def forms_at_centre(jet, k1, k2):
     """`offset_forms` at u = 0."""
     return offset_forms((1.0, 0.0, 0.0), k1, k2, jet[0], jet[1], jet[2], jet[3], jet[4], jet[5])
 
 
-@inner
+@lean
 def curvature_and_gradients(jet, k1, k2):
     """K, H, gradients of both by (f11, f12, f22), and the factor of f11 f22 - f12^2 in K."""
     g11, g12, g22, l, m, n, volume = forms_at_centre(jet, k1, k2)
@@ -55,7 +55,7 @@ def curvature_and_gradients(jet, k1, k2):
     return gaussian, mean, (p * n, -2.0 * p * m, p * l), (q * g22, -2.0 * q * g12, q * g11), area * area / (d * d)
 
 
-@inner
+@lean
 def quadratic_form(g, c):
     """g^T C g for the covariances C11, C12, C13, C22, C23, C33."""
     a, b, d = g[0], g[1], g[2]
@@ -63,7 +63,7 @@ def quadratic_form(g, c):
     return max(total, 0.0)
 
 
-@inner
+@lean
 def write_no_row(t, tables):
     """Write nan for a ball that has no points beyond the one below it."""
     tables.variance[t, :] = np.nan
@@ -76,7 +76,7 @@ def write_no_row(t, tables):
         tables.noise[t, :] = np.nan
 
 
-@inner
+@lean
 def shares(errors_of, curvedness):
     """Factors of K and of H in the errors asked for."""
     if errors_of == MEAN:
@@ -84,7 +84,7 @@ def shares(errors_of, curvedness):
     return 1.0, curvedness if errors_of == BOTH else 0.0
 
 
-@inner
+@lean
 def write_weighted(gaussian, mean, of_gaussian, of_mean, share, values, gradients):
     """Write K and H and their gradients times their shares."""
     values[0], values[1] = share[0] * gaussian, share[1] * mean
@@ -92,20 +92,20 @@ def write_weighted(gaussian, mean, of_gaussian, of_mean, share, values, gradient
         gradients[0, k], gradients[1, k] = share[0] * of_gaussian[k], share[1] * of_mean[k]
 
 
-@inner
+@lean
 def sum_of_forms(gradients, share, c):
     """Variance of both by the covariances of the second derivatives."""
     total = quadratic_form(gradients[0], c)
     return total + quadratic_form(gradients[1], c) if share[1] > 0.0 else total
 
 
-@inner
+@lean
 def squared_difference(a, b, first, second):
     """Squared distance of (a, b) from the pair of another fit."""
     return (a - first) ** 2 + (b - second) ** 2
 
 
-@inner
+@lean
 def write_row(t, count, top, share, k1, k2, s2, fit, tables, values, gradients):
     """Write one row of the tables from the orders 2..top of one ball, for noise of variance s2."""
     known = tables.second.shape[0] == 0
@@ -137,7 +137,7 @@ def write_row(t, count, top, share, k1, k2, s2, fit, tables, values, gradients):
             tables.bias[t, d - 2] = e2 - (v if known else 0.0)
 
 
-@inner
+@lean
 def write_rows(t, points, n, reaches, order, share, k1, k2, s2, fit, tables, values, gradients):
     """Write one row for each of some nested balls from row t on; of one-sided ones each has an origin of its own."""
     before, apart, first, second = 0.0, False, np.nan, np.nan

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
+from rinow.kernels._jit import kernel, lean, parallel_kernel, prange
 
 
-@inner
+@lean
 def spread_bits(x):
     """The ten bits of a number with two zeros before each."""
     x = (x | x << 16) & 0x030000FF

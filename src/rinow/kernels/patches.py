@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import bends, monge, nested_fits, stencils
-from rinow.kernels._jit import inlined, inner, kernel, parallel_kernel, prange
+from rinow.kernels._jit import inlined, lean, parallel_kernel, prange
 from rinow.kernels.nested_fits import ROOMY, TERMS
 from rinow.kernels.osculating_torus import arc_place, offset_forms, torus_frame
 from rinow.kernels.patch_fits import STEEP, curvature_and_gradients, forms_at_centre
@@ -36,7 +36,7 @@ class Patch(NamedTuple):
     order: int
 
 
-@inner
+@lean
 def shape_in_frame(g11, g12, g22, l, m, n, volume):
     """Entries of the shape operator for the first tangent and the direction across it."""
     e = math.sqrt(g11)
@@ -46,7 +46,7 @@ def shape_in_frame(g11, g12, g22, l, m, n, volume):
     return s11, s12, (n - a * a * s11 - 2.0 * a * b * s12) / (b * b)
 
 
-@inner
+@lean
 def principal(s11, s12, s22):
     """Eigenvalues of a symmetric matrix, the one of larger modulus last, and cosine and sine of the first direction."""
     mean, half = 0.5 * (s11 + s22), 0.5 * (s11 - s22)
@@ -59,7 +59,7 @@ def principal(s11, s12, s22):
     return mean + r, mean - r, cos, sin
 
 
-@inner
+@lean
 def combine(frame, x, y, z, out, first):
     """Write x d1 + y d2 + z n, of unit length, to out[first..first + 2]."""
     length = math.sqrt(x * x + y * y + z * z)
@@ -67,7 +67,7 @@ def combine(frame, x, y, z, out, first):
         out[first + k] = (x * frame[3 + k] + y * frame[6 + k] + z * frame[k]) / length
 
 
-@inner
+@lean
 def write_frame(jet, spacing, frame, out):
     """Write normal, principal directions and curvatures of a fit over a torus; of a steep one only the normal."""
     k1, k2 = frame[9] * spacing, frame[10] * spacing
@@ -111,7 +111,7 @@ def in_space(frame, x, y, z):
     )
 
 
-@inner
+@lean
 def write_values(u, v, jet, frame, spacing, out):
     """Write curvatures, second fundamental form and normal at a point of a patch; false where it is steep."""
     f, f1, f2, f11, f12, f22 = jet
@@ -145,7 +145,7 @@ def write_values(u, v, jet, frame, spacing, out):
     return True
 
 
-@inner
+@lean
 def is_even_handed(lower, upper):
     """Whether an odd order has nearly the variance of the even one below it, as on stencils with points all around.
 
@@ -154,7 +154,7 @@ def is_even_handed(lower, upper):
     return upper[0] + upper[3] + upper[5] < SYMMETRIC * (lower[0] + lower[3] + lower[5])
 
 
-@inner
+@lean
 def chosen_order(wanted, top, fit):
     """The order wanted, the odd one above it where that is as good at the centre, or the highest there is."""
     if wanted % 2 == 0 and top == wanted + 1 and is_even_handed(fit.covariances[wanted], fit.covariances[top]):
@@ -162,7 +162,7 @@ def chosen_order(wanted, top, fit):
     return min(wanted, top)
 
 
-@inner
+@lean
 def write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values):
     """Write the weighted values of one patch at the vertices nearer than patch.core spacings to its centre."""
     k, centre, points = start, ball.members[0], ball.points
@@ -201,7 +201,7 @@ def write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, 
         k += 1
 
 
-@inner
+@lean
 def write_patch(start, stop, size, top, asked, reach, frame, patch, fit, sheet, ball, coefficients, vertices, values):
     """Write the values of one patch from its fits of orders up to `top`, of a factorisation made for `asked`."""
     spacing = sheet.spacing[ball.members[0]]
@@ -213,20 +213,29 @@ def write_patch(start, stop, size, top, asked, reach, frame, patch, fit, sheet, 
     write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values)
 
 
-@kernel
-def add_values(vertices, values, totals):
-    """Add the values of patches to the totals of their vertices; the last total is of the squared deviations of K."""
-    last = values.shape[1]
-    for i in range(len(vertices)):
-        v = vertices[i]
-        if v < 0:
-            continue
-        weight, more = totals[v, 0], values[i, 0]
-        if weight > 0.0 and more > 0.0:
-            apart = values[i, 1] / more - totals[v, 1] / weight
-            totals[v, last] += weight * more / (weight + more) * apart * apart
-        for k in range(last):
-            totals[v, k] += values[i, k]
+@lean
+def add_row(i, values, v, totals):
+    """Add row i of the values to the totals of vertex v."""
+    last, weight, more = values.shape[1], totals[v, 0], values[i, 0]
+    if weight > 0.0 and more > 0.0:
+        apart = values[i, 1] / more - totals[v, 1] / weight
+        totals[v, last] += weight * more / (weight + more) * apart * apart
+    for k in range(last):
+        totals[v, k] += values[i, k]
+
+
+@parallel_kernel
+def add_values(vertices, values, n_blocks, totals):
+    """Add the values of patches to the totals of their vertices; the last total is of the squared deviations of K.
+
+    Each block of vertices looks through all values for its own, so that they are added in their order.
+    """
+    n = len(totals)
+    for block in prange(n_blocks):
+        first, last = n * block // n_blocks, n * (block + 1) // n_blocks
+        for i in range(len(vertices)):
+            if first <= vertices[i] < last:
+                add_row(i, values, vertices[i], totals)
 
 
 @parallel_kernel

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from rinow.kernels import monge, stencils
-from rinow.kernels._jit import inner, parallel_kernel, prange
+from rinow.kernels._jit import lean, parallel_kernel, prange
 from rinow.kernels.stencils import QUADRIC_POINTS, SOFTENING
 
 PIVOT = 1e-6
@@ -17,7 +17,7 @@ PIVOT = 1e-6
 product x y is barely determined, but neither the normal nor the mean curvature need it."""
 
 
-@inner
+@lean
 def quadric_moments(points, n):
     """Weighted sums over the points: products of degree 2, 3, 4, and the height times products of degree 1 and 2."""
     xx = xy = yy = xxx = xxy = xyy = yyy = x4 = x3y = x2y2 = xy3 = y4 = 0.0
@@ -34,7 +34,7 @@ def quadric_moments(points, n):
     return (xx, xy, yy), (xxx, xxy, xyy, yyy), (x4, x3y, x2y2, xy3, y4), (zx, zy), (zxx, zxy, zyy)
 
 
-@inner
+@lean
 def solve_three(a, b, c, d, e, f, x, y, z):
     """Solution of the symmetric system ((a, b, c), (b, d, e), (c, e, f)) and its last pivots; 0 if one is not > 0."""
     if not a > 0.0:
@@ -53,7 +53,7 @@ def solve_three(a, b, c, d, e, f, x, y, z):
     return x / a - l1 * v - l2 * w, v, w, p, r
 
 
-@inner
+@lean
 def solve_quadric(moments, tilted, coefficients):
     """Write c of z = c0 x + c1 y + c2 x^2 + c3 x y + c4 y^2, the slopes eliminated first; whether it is determined.
 
@@ -78,7 +78,7 @@ def solve_quadric(moments, tilted, coefficients):
     return True
 
 
-@inner
+@lean
 def fit_quadric(points, n, coefficients):
     """Fit a quadric, or Euler's formula where points are too few or too much in line; whether either is determined."""
     if n < QUADRIC_POINTS:

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from rinow.kernels import monge, nested_fits, stencils
-from rinow.kernels._jit import inner, parallel_kernel, prange
+from rinow.kernels._jit import lean, parallel_kernel, prange
 from rinow.kernels.stencils import SOFTENING
 
 N_RINGS = 3
@@ -17,7 +17,7 @@ LOW, HIGH = 3, 4
 """Orders of the fits."""
 
 
-@inner
+@lean
 def fit_jets(points, n, work):
     """Fit orders up to HIGH to n weighted points and to the centre; return the highest order that is determined."""
     moments, offsets = work.moments[0], work.offsets[0]
@@ -35,10 +35,10 @@ def fit_jets(points, n, work):
                     offsets[b, a] += w * x
                 x *= u
             y *= v
-    return nested_fits.fit_orders(0, 1.0, nested_fits.highest_order(n + 1, HIGH), work)
+    return nested_fits.fit_orders(len(work.counts) - 1, 1.0, nested_fits.highest_order(n + 1, HIGH), work)
 
 
-@inner
+@lean
 def write_curvatures(order, unit, work, out):
     """Write Gaussian and mean curvature at the centre of the fit of some order."""
     _, f1, f2, f11, f12, f22 = work.jets[order]
@@ -46,7 +46,7 @@ def write_curvatures(order, unit, work, out):
     out[0], out[1] = (s11 * s22 - s12 * s12) / (unit * unit), 0.5 * (s11 + s22) / unit
 
 
-@inner
+@lean
 def better_normal(normal, tangent, work):
     """The normal of the fit of order LOW over a tangent plane."""
     jet = work.jets[LOW]

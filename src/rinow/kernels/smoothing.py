@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
+from rinow.kernels._jit import kernel, lean, parallel_kernel, prange
 from rinow.kernels.adjacency import previous_corner
 from rinow.kernels.development import develop, fan_angle
 
@@ -18,7 +18,7 @@ FLATTEST = 1e-3
 """Where the spread of the data across is below this share of that along, it determines no slope across."""
 
 
-@inner
+@lean
 def weighted_moments(radius, columns, points, areas, weights):
     """Write the weights area (1 - (|u|/radius)²)³, not all 0; their sum, means and covariances."""
     total = mx = my = 0.0
@@ -56,7 +56,7 @@ def slope_terms(mx, my, xx, xy, yy):
     return along * cos, along * sin
 
 
-@inner
+@lean
 def sees_gap(n, radius, areas, members, points):
     """Whether a member within the radius has no data."""
     for m in range(n):
@@ -75,7 +75,7 @@ def develop_ball(v, radius, is_closed, metric, members, slots, points, counts):
     return develop(v, radius, stretch, metric, members, slots, points, counts)
 
 
-@inner
+@lean
 def is_inside(m, radius, areas, members, points):
     """Whether member m has data and a weight."""
     x, y = points[m, 0], points[m, 1]
@@ -238,7 +238,7 @@ def ring_means(x, offsets, neighbours, out):
             out[v, j] = mean if math.isfinite(total) else finite_mean(v, j, x, offsets, neighbours)
 
 
-@inner
+@lean
 def finite_mean(v, j, x, offsets, neighbours):
     """The mean of the finite values in column j at v and its neighbours, nan without any."""
     total, count = 0.0, 0

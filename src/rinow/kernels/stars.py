@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rinow.kernels._jit import inner, parallel_kernel, prange
+from rinow.kernels._jit import lean, parallel_kernel, prange
 from rinow.kernels.spaceform import angle_and_derivative, is_triangle
 from rinow.kernels.triangles import triangle_area
 from rinow.tolerances import DEGENERATE_AREA
@@ -19,7 +19,7 @@ CLOSE = 4e-15
 """Last step of the iteration over the largest curvature the star allows: about the rounding of its angles."""
 
 
-@inner
+@lean
 def star_angle(sides, k):
     """Sum of the comparison angles in S_k at the centre, and its derivative in k."""
     total = slope = 0.0
@@ -30,7 +30,7 @@ def star_angle(sides, k):
     return total, slope
 
 
-@inner
+@lean
 def negative_bound(sides, unit):
     """A curvature at which the angles sum to less than 2 pi, of -unit, -4 unit, ...; nan without one."""
     low = -unit
@@ -41,7 +41,7 @@ def negative_bound(sides, unit):
     return np.nan
 
 
-@inner
+@lean
 def star_curvature(sides):
     """The k at which the angles of the star in S_k sum to 2 pi, by Newton's method kept in a bracket; nan without one.
 

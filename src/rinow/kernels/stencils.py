@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rinow.kernels import monge
-from rinow.kernels._jit import inner, kernel, parallel_kernel, prange
+from rinow.kernels._jit import kernel, lean, parallel_kernel, prange
 
 SOFTENING = 0.01
 """Added to squared distances, in squared radii of the stencil: two vertices that nearly coincide tell no curvature."""
@@ -34,7 +34,7 @@ class Surface(NamedTuple):
     is_oriented: bool
 
 
-@inner
+@lean
 def add_aligned(total, vector, align):
     """Add a vector to a total; with `align` its opposite where that makes the smaller angle."""
     if align and total[0] * vector[0] + total[1] * vector[1] + total[2] * vector[2] < 0.0:
@@ -42,7 +42,7 @@ def add_aligned(total, vector, align):
     return total[0] + vector[0], total[1] + vector[1], total[2] + vector[2]
 
 
-@inner
+@lean
 def area_vector(vertices, v, p, q):
     """Doubled area vector of a triangle."""
     ax, ay, az = vertices[p, 0] - vertices[v, 0], vertices[p, 1] - vertices[v, 1], vertices[p, 2] - vertices[v, 2]
@@ -121,27 +121,27 @@ def mean_edge_lengths(vertices, offsets, neighbours, out):
         out[v] = total / max(offsets[v + 1] - offsets[v], 1)
 
 
-@inner
+@lean
 def normal_at(v, surface):
     """The normal at a vertex."""
     return surface.normals[v, 0], surface.normals[v, 1], surface.normals[v, 2]
 
 
-@inner
+@lean
 def squared_distance(vertices, i, j):
     """Squared Euclidean distance of vertices i and j."""
     x, y, z = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1], vertices[j, 2] - vertices[i, 2]
     return x * x + y * y + z * z
 
 
-@inner
+@lean
 def spokes(w, is_centre, offsets):
     """Rows of the neighbours of w that a stencil grows to: all of them, but none through a hub."""
     first, last = offsets[w], offsets[w + 1]
     return first, (last if is_centre or last - first <= HUB else first)
 
 
-@inner
+@lean
 def rings(v, n_rings, surface, members, marks):
     """Write v and all vertices at most so many edges away to `members`; how many, and the largest squared distance."""
     offsets, neighbours = surface.offsets, surface.neighbours
@@ -163,7 +163,7 @@ def rings(v, n_rings, surface, members, marks):
     return n, reach
 
 
-@inner
+@lean
 def facing(members, n, normal, surface):
     """Move v, its neighbours and the members whose normals are turned little from a normal to the front; how many."""
     x, y, z = normal
@@ -177,7 +177,7 @@ def facing(members, n, normal, surface):
     return kept
 
 
-@inner
+@lean
 def local_coordinates(members, n, unit, normal, vertices, points):
     """Write to points[i] the tangential coordinates and the height of member i + 1 seen from member 0, over `unit`.
 
@@ -198,7 +198,7 @@ def local_coordinates(members, n, unit, normal, vertices, points):
     return monge.combination(cos, tangent, sin, monge.cross(normal, tangent))
 
 
-@inner
+@lean
 def turn_to_long_axis(points, n):
     """Turn the points about the normal until x is the direction of their largest spread; cosine and sine of the turn.
 
@@ -217,7 +217,7 @@ def turn_to_long_axis(points, n):
     return cos, sin
 
 
-@inner
+@lean
 def stretch_to_chords(points, n):
     """Move the points outwards over the plane until the tangential distance is the distance d.
 

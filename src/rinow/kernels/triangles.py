@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from rinow.kernels._jit import inner, parallel_kernel, prange
+from rinow.kernels._jit import lean, parallel_kernel, prange
 
 
-@inner
+@lean
 def excesses(a, b, c):
     """Products (a+b+c), (b+c-a), (a+c-b), (a+b-c), none negative, without cancellation (Kahan 2014)."""
     if a < b:
@@ -19,14 +19,14 @@ def excesses(a, b, c):
     return a + (b + c), max(c - (a - b), 0.0), max(c + (a - b), 0.0), max(a + (b - c), 0.0)
 
 
-@inner
+@lean
 def triangle_area(a, b, c):
     """Area by Heron's formula in Kahan's order; 0 for a triple that fails the triangle inequality."""
     p, q, r, s = excesses(a, b, c)
     return 0.25 * math.sqrt(p * q) * math.sqrt(r * s)
 
 
-@inner
+@lean
 def triangle_angle(a, b, c):
     """Angle opposite a, in [0, pi]: tan^2(angle/2) = (s-b)(s-c) / (s (s-a)).
 
@@ -42,13 +42,13 @@ def triangle_angle(a, b, c):
     return 2.0 * math.atan2(math.sqrt(s_b) * math.sqrt(s_c), math.sqrt(a + (b + c)) * math.sqrt(s_a))
 
 
-@inner
+@lean
 def excess(a, b, c):
     """Excess b + c - a, with the two closest lengths subtracted first."""
     return c - (a - b) if b >= c else b - (a - c)
 
 
-@inner
+@lean
 def triangle_angles(a, b, c):
     """Angles opposite a, b, c; the largest is pi minus the others, so that the sum is pi whatever the rounding."""
     if a >= b and a >= c:
@@ -61,13 +61,13 @@ def triangle_angles(a, b, c):
     return alpha, beta, math.pi - alpha - beta
 
 
-@inner
+@lean
 def difference(vertices, i, j):
     """Vector from vertex j to vertex i."""
     return vertices[i, 0] - vertices[j, 0], vertices[i, 1] - vertices[j, 1], vertices[i, 2] - vertices[j, 2]
 
 
-@inner
+@lean
 def distance(vertices, i, j):
     """Euclidean distance of vertices i and j."""
     x, y, z = difference(vertices, i, j)

@@ -11,9 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._arrays import rows_are_finite
+
 __all__ = ["camera", "rasterize", "shade"]
 
 Floats = NDArray[np.float64]
+ROUNDING = 1e-3
+"""Pixels, far more than rounding may move a place by."""
 _PIXELS_AT_ONCE = 4_000_000
 """Pixels expanded in one block; bounds the memory at some 300 MB."""
 
@@ -48,16 +52,17 @@ def rasterize(points: Floats, faces: NDArray[np.intp], size: tuple[int, int]) ->
     rows, columns = size
     depth = np.full(rows * columns, -np.inf)
     nearest = np.full(rows * columns, -1, np.intp)
-    P = points[faces]
-    low, high = P[:, :, 1].min(axis=1), P[:, :, 1].max(axis=1)
+    P = points.take(faces, axis=0)
     with np.errstate(invalid="ignore"):
+        index = np.flatnonzero(_may_hold_a_centre(P[:, :, 0], columns) & _may_hold_a_centre(P[:, :, 1], rows))
+        P = P.take(index, axis=0)
         edge_on = _cross(P[:, 1, :2] - P[:, 0, :2], P[:, 2, :2] - P[:, 0, :2]) == 0.0
-        visible = np.isfinite(P).all(axis=(1, 2)) & (high >= 0) & (low <= rows) & ~edge_on
-    index = np.flatnonzero(visible)
-    P, low, high = P[index], low[index], high[index]
+        proper = np.flatnonzero(rows_are_finite(P.reshape(-1, 9)) & ~edge_on)
+    index, P = index[proper], P.take(proper, axis=0)
     planes = _planes(P)
     # Upper bound of the pixels of a face, to cut the work into blocks.
-    width = P[:, :, 0].max(axis=1) - P[:, :, 0].min(axis=1) + 2.0
+    (left, right), (low, high) = _range(P[:, :, 0]), _range(P[:, :, 1])
+    width = right - left + 2.0
     cost = np.cumsum(np.minimum(width, columns) * np.minimum(high - low + 2.0, rows))
     cuts = np.searchsorted(cost, np.arange(_PIXELS_AT_ONCE, cost[-1] if len(cost) else 0, _PIXELS_AT_ONCE))
     for block in np.split(np.arange(len(index)), np.unique(cuts)):
@@ -68,6 +73,18 @@ def rasterize(points: Floats, faces: NDArray[np.intp], size: tuple[int, int]) ->
         won = z == depth[pixel]
         nearest[pixel[won]] = index[f[won]]
     return nearest.reshape(size), _barycentric(points, faces, nearest, columns).reshape(rows, columns, 3)
+
+
+def _range(values: Floats) -> tuple[Floats, Floats]:
+    """Least and greatest of the three values of each row; numpy reduces short rows one by one."""
+    a, b, c = values.T
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+
+
+def _may_hold_a_centre(places: Floats, n: int) -> NDArray[np.bool_]:
+    """Whether a centre of the n pixels may lie between three places; most small faces have none."""
+    low, high = _range(places)
+    return (np.ceil(low - 0.5 - ROUNDING) <= np.floor(high - 0.5 + ROUNDING)) & (high >= 0) & (low <= n)
 
 
 def _planes(P: Floats) -> Floats:
@@ -81,7 +98,7 @@ def _planes(P: Floats) -> Floats:
 
 def _covered_pixels(P: Floats, rows: int, columns: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Pairs (face, pixel) for every pixel centre inside a face, by spans along the rows."""
-    low, high = P[:, :, 1].min(axis=1), P[:, :, 1].max(axis=1)
+    low, high = _range(P[:, :, 1])
     first = np.clip(np.ceil(low - 0.5), 0, rows).astype(np.intp)
     last = np.clip(np.floor(high - 0.5) + 1, 0, rows).astype(np.intp)
     f, y = _expand(first, last)
