@@ -200,7 +200,8 @@ def blended_patches(
     fitting = ladder.fitting(
         patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
     )
-    add_patches(fitting, CORE * core, in_octaves(choice.risk, sheet.spacing[centres] ** -4), quality.power, totals, tasks, 0.2)
+    expected = in_octaves(choice.risk, sheet.spacing[centres] ** -4)
+    add_patches(fitting, CORE * core, expected, quality.power, totals, tasks, 0.2)
     out, direction1, direction2 = np.empty((len(totals), 6)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
     patches.mean_values(totals, sheet.normals, out, direction1, direction2)
     return out, direction1, direction2, noise
