@@ -26,7 +26,7 @@ from rinow.errors import InvalidInputError, InvalidMeshError
 from rinow.kernels import triangles
 from rinow.polyhedral_surface import PolyhedralSurface
 
-__all__ = ["IntrinsicMesh", "TriangleMesh", "as_mesh", "as_triangle_mesh", "is_mesh_like"]
+__all__ = ["IntrinsicMesh", "TriangleMesh", "as_mesh", "as_triangle_mesh", "is_mesh_like", "merged"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -221,21 +221,34 @@ class TriangleMesh(PolyhedralSurface):
         vertex_map : (n_vertices,) ndarray of intp
             New index of each old vertex.  Vertices that are not finite stay apart.
         """
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
         from scipy.spatial import KDTree
 
         finite = np.flatnonzero(self.vertex_is_finite)
         pairs = finite[KDTree(self.vertices[finite]).query_pairs(rtol * self.diagonal, output_type="ndarray")]
-        n = self.n_vertices
-        links = coo_array((np.ones(len(pairs), np.bool_), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-        labels = connected_components(links, directed=False)[1]
-        _, first, vertex_map = np.unique(labels, return_index=True, return_inverse=True)
-        order = np.argsort(first)
-        rank = np.empty_like(order)
-        rank[order] = np.arange(len(order))
-        vertex_map = rank[vertex_map].astype(np.intp)
-        return TriangleMesh(self.vertices[first[order]], vertex_map[self.faces]), vertex_map
+        vertices, vertex_map = _merged(self.n_vertices, pairs)
+        return TriangleMesh(self.vertices[vertices], vertex_map[self.faces]), vertex_map
+
+
+def merged(mesh: IntrinsicMesh | TriangleMesh, pairs: Indices) -> tuple[IntrinsicMesh | TriangleMesh, Indices]:
+    """The mesh with the vertices of each pair (k, 2) as one, at the place of the first, and the new index of each."""
+    vertices, vertex_map = _merged(mesh.n_vertices, pairs)
+    if isinstance(mesh, IntrinsicMesh):
+        return IntrinsicMesh(vertex_map[mesh.faces], mesh.edge_lengths, len(vertices)), vertex_map
+    return TriangleMesh(mesh.vertices[vertices], vertex_map[mesh.faces]), vertex_map
+
+
+def _merged(n: int, pairs: Indices) -> tuple[Indices, Indices]:
+    """The first of n vertices in each cluster, in their order, and the number of the cluster of each."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    links = coo_array((np.ones(len(pairs), np.bool_), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    labels = connected_components(links, directed=False)[1]
+    _, first, clusters = np.unique(labels, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return first[order], rank[clusters].astype(np.intp)
 
 
 def _as_mapping(vertex_data: Any) -> Mapping[str, ArrayLike]:

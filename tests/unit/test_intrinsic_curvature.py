@@ -290,6 +290,19 @@ def test_damage_leaves_a_value_everywhere_else():
     np.testing.assert_allclose(c.gaussian[ok], 1, atol=0.1)
 
 
+def test_a_face_without_area_leaves_no_gap():
+    # A vertex moved onto the edge opposite it, exactly: little more is lost than with the same vertex a little beside.
+    shape = shapes.irregular_ellipsoid(1000, axes=(1.0, 0.85, 0.7))
+    clean, found = curvature(shape).gaussian, []
+    for beside in (0.0, 1e-6):
+        V, (a, b, c) = shape.vertices.copy(), shape.faces[100]
+        V[a] = 0.5 * (V[b] + V[c]) * (1.0 + beside)
+        moved = curvature(shape._replace(vertices=V))
+        assert (moved.status == VertexStatus.OK).all()
+        found.append(np.abs(moved.gaussian - clean).max())
+    assert found[0] < 2.0 * found[1] < 0.5 * clean.mean()
+
+
 @pytest.mark.parametrize(
     "shape",
     [shapes.tetrahedron(), shapes.bow_tie(), shapes.moebius_strip(), shapes.two_components(), shapes.cone(),

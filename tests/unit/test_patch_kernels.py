@@ -262,3 +262,16 @@ def test_the_choice_of_centres_knows_no_motion_no_scale_and_no_numbering():
     centres = INDEX[cover(SHEET, turns(SHEET), np.full(len(INDEX), 2.0))]
     moved = index[cover(sheet, turns(sheet), np.full(len(index), 2.0))]
     assert set(new[centres].tolist()) == set(moved.tolist())
+
+
+@pytest.mark.parametrize("radius", [1.2, 2.0, 4.5])
+def test_stars_of_equal_shape_become_centres_together(radius):
+    # Latitudes of 30 equal stars each: what a step along them leaves as it is keeps the centres.
+    u, v = (x.ravel() for x in np.meshgrid(np.arange(30), np.arange(14), indexing="ij"))
+    s, t = 2 * np.pi * u / 30, 2 * np.pi * v / 14
+    V = np.stack([(2.0 + 0.8 * np.cos(t)) * np.cos(s), (2.0 + 0.8 * np.cos(t)) * np.sin(s), 0.8 * np.sin(t)])
+    a, b, c, d = (((u + i) % 30) * 14 + (v + j) % 14 for i, j in ((0, 0), (1, 0), (1, 1), (0, 1)))
+    sheet, index = patch_sheet(TriangleMesh(V.T, np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3)))
+    centres = np.sort(index[cover(sheet, turns(sheet), np.full(len(index), radius))])
+    assert 30 <= len(centres) < len(index)
+    np.testing.assert_array_equal(np.sort((centres + 14) % len(index)), centres)

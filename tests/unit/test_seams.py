@@ -1,4 +1,4 @@
-"""Vertices that exporters split along seams, taken as one: values of the closed surface, in the order of the file."""
+"""Seams of exported files: values and features of the closed surface, in the order of the file."""
 
 import json
 
@@ -9,7 +9,6 @@ import rinow
 import shapes
 from rinow.cli.main import main
 from rinow.study.features import study_features
-from rinow.study.seams import without_seams
 from rinow.study.surface import study_surface
 
 
@@ -34,24 +33,18 @@ def ball():
 
 def test_curvature_is_that_of_the_closed_surface(ball):
     sphere, mesh, origin = ball
-    study = study_surface(mesh, weld=True)
+    study = study_surface(mesh)
     whole = rinow.surface_curvature((sphere.vertices, sphere.faces))
     assert study.mesh is mesh
     assert (study.curvature.status == rinow.VertexStatus.OK).all()
     np.testing.assert_allclose(study.curvature.gaussian, whole.gaussian[origin], rtol=1e-9)
-    assert study.notes == (
-        f"{len(origin)} vertices were taken as 642: those closer than 1e-05 of the diagonal are one, and each has its "
-        "value.",
-    )
-    assert (study_surface(mesh).curvature.status == rinow.VertexStatus.BOUNDARY).any()
 
 
 def test_creases_at_seams_are_found_and_marked_on_both_sides():
     V, F = shapes.box(4)[:2]
     normals = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
     mesh, origin = split(V, F, np.abs(normals).argmax(axis=1) + 3 * (normals.sum(axis=1) > 0))
-    found, whole = study_features(mesh, weld=True), rinow.singular_features((V, F))
-    assert len(study_features(mesh).features.crease_edges) == 0
+    found, whole = study_features(mesh), rinow.singular_features((V, F))
     np.testing.assert_array_equal(np.sort(origin[found.features.corners]), np.sort(whole.corners))
     assert len(found.features.crease_edges) == len(whole.crease_edges)
     kinds = np.zeros(len(V))
@@ -60,23 +53,11 @@ def test_creases_at_seams_are_found_and_marked_on_both_sides():
     np.testing.assert_array_equal(found.vertex_data()["feature"], kinds[origin])
 
 
-def test_a_mesh_without_seams_is_itself():
-    sphere = shapes.icosphere(1)
-    mesh = rinow.TriangleMesh(sphere.vertices, sphere.faces)
-    same, index, notes = without_seams(mesh)
-    assert same is mesh
-    np.testing.assert_array_equal(index, np.arange(mesh.n_vertices))
-    assert notes == ()
-
-
-def test_weld_on_the_command_line(ball, tmp_path, monkeypatch, capsys):
+def test_seams_of_files_are_closed_on_the_command_line(ball, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     _, mesh, origin = ball
     rinow.write_mesh("seam.glb", mesh)
-    assert main(["curvature", "seam.glb", "--weld", "-o", "out.npz", "--json"]) == 0
+    assert main(["curvature", "seam.glb", "-o", "out.npz", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["status"] == {"OK": len(origin)}
     assert rinow.read_mesh("out.npz").n_vertices == len(origin)
-    assert main(["features", "seam.glb", "--weld", "--json"]) == 0
-    np.savetxt("points.csv", mesh.vertices)
-    assert main(["curvature", "points.csv", "--weld"]) == 1
-    assert "--weld needs faces" in capsys.readouterr().err
+    assert main(["features", "seam.glb", "--json"]) == 0

@@ -363,13 +363,13 @@ def test_notes_name_the_faults():
     notes = surface_curvature((V, np.concatenate([turned, [[1, 1, 2]]]))).notes
     assert notes[0].startswith(f"1 of {len(F) + 1} faces take no part")
     assert notes[1].startswith("1 faces were turned")
-    cut = np.concatenate([V, V])
-    half = V[F].mean(axis=1)[:, 2] > 0
-    seam = surface_curvature((cut, np.where(half[:, None], F + len(V), F)), method="angle_defect")
-    n_seam = np.intersect1d(F[half], F[~half]).size
-    assert seam.notes == (
-        f"{2 * n_seam} boundary vertices lie on others: these seams are open; `TriangleMesh.welded`, or --weld on "
-        "the command line, closes them.",
+    patch = shapes.open_patch(200)
+    twice = np.concatenate([patch.vertices] * 2), np.concatenate([patch.faces, patch.faces + len(patch.vertices)])
+    covered = surface_curvature(twice, method="angle_defect")
+    n = 2 * len(TriangleMesh(patch.vertices, patch.faces).boundary_vertices)
+    assert covered.notes == (
+        f"{n} boundary vertices lie on others, where sheets cover each other or more than two edges meet: they stay "
+        "open.",
     )
 
 

@@ -43,7 +43,6 @@ def curvature(
     method: Method = "auto",
     quality: Quality = "best",
     radius: float | None = None,
-    weld: Flag = False,
     distances: Flag = False,
     rtol: float = 1e-9,
     field: Field = "gaussian",
@@ -72,9 +71,6 @@ def curvature(
         fast is several times faster and less accurate; for meshes and the methods auto and sectional.
     radius
         Scale in the unit of length of the file; by default each method chooses its own.
-    weld
-        Take vertices at one place as one, for meshes: closes the seams that exporters make at textures and sharp
-        edges.  Each vertex keeps its place in the file and has its value.
     distances
         The file holds all distances of some points, and nothing else is known of them.
     rtol
@@ -92,7 +88,7 @@ def curvature(
     json
         Print one JSON object instead of a table.
     """
-    needs_faces = {"method": method != "auto", "quality": quality != "best", "weld": weld}
+    needs_faces = {"method": method != "auto", "quality": quality != "best"}
     if distances:
         drawn = {"field": field != "gaussian", "picture": picture is not None, "report": report is not None}
         _refuse(needs_faces | drawn, f"needs a surface, and {mesh} holds distances only")
@@ -109,12 +105,12 @@ def curvature(
         surface = read_mesh(mesh)
     with working(f"curvature of {surface.n_vertices:,} vertices") as progress:
         study = study_surface(
-            surface, method=method, quality=quality, radius=radius, weld=weld, unit=unit, progress=progress
+            surface, method=method, quality=quality, radius=radius, unit=unit, progress=progress
         )
     features = None
     if report:
         with working(f"creases and corners of {surface.n_vertices:,} vertices"), study.timed("features"):
-            features = study_features(surface, weld=weld)
+            features = study_features(surface)
     notes: list[str] = []
     if not np.isfinite(study.fields(field)[field]).any():
         notes.append(f"{field} is undefined at every vertex: method {method} gives none on this mesh.")

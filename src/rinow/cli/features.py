@@ -22,7 +22,6 @@ def features(
     /,
     *,
     output: Outputs = (),
-    weld: Flag = False,
     picture: Path | None = None,
     up: Literal["x", "y", "z"] = "z",
     json: Flag = False,
@@ -37,8 +36,6 @@ def features(
         Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.
     output
         File to write the mesh and its features to; may be repeated.  PLY, VTP, NPZ and GIFTI carry fields.
-    weld
-        Take vertices at one place as one: closes the seams that exporters make at sharp edges and textures.
     picture
         PNG file to draw four views to.
     up
@@ -53,7 +50,7 @@ def features(
         surface = read_mesh(mesh)
     with working(f"features of {surface.n_vertices:,} vertices"):
         start = time.perf_counter()
-        study = study_features(surface, weld=weld)
+        study = study_features(surface)
         seconds = time.perf_counter() - start
     notes = list(study.notes)
     for path in output:

@@ -53,6 +53,8 @@ class Arcs:
         rings = flow.mesh.topology.neighbour_offsets, flow.mesh.topology.neighbours
         spokes = np.empty((len(rings[1]), 2))
         chord_forms.chord_terms(flow.defect_densities, flow.areas, flow.metric, rings, N_BLOCKS, terms, spokes)
+        for values in (terms, spokes):
+            values[~np.isfinite(values)] = 0.0  # of faces without area
         is_fan, radii = flow.mesh.topology.vertex_is_manifold, REACH * flow.spacing
         data = (flow.defect_densities, flow.areas, terms, spokes)
         chord_forms.fit_forms(radii, *data, is_fan, flow.metric, rings, N_BLOCKS, forms, smooth)

@@ -15,20 +15,27 @@ Ints = NDArray[np.int32]
 
 CORE = 1.4
 """Radius of the part of a patch that is used, over the radius within which the centre is the only one."""
+MOST_TIED = 500
+"""Stars of equal shape that become centres together."""
 
 
 def turns(sheet: balls.Sheet) -> Ints:
-    """All vertices in the order in which they may become centres.
+    """All vertices in the order in which they may become centres; ~v for a vertex v tied with the one before.
 
     Notes
     -----
     It is that of a hash of the shapes of their stars, so the choice is that of a random order: a change of the mesh
-    changes the choice near it only, and neither a motion nor another numbering changes it, except among stars of equal
-    shape, which come in the order of their numbers in the sheet.
+    changes the choice near it only, and neither a motion nor another numbering changes it.  Stars of equal shape, as a
+    symmetry of the mesh makes them, are tied, up to `MOST_TIED` of them: more, as on a plane, would all be centres, and
+    come in the order of their numbers in the sheet.
     """
     keys = np.empty(len(sheet.vertices), np.uint32)
     covers.shape_keys(sheet.vertices, sheet.offsets, sheet.neighbours, keys)
-    return sorted_by(keys)
+    order = sorted_by(keys)
+    starts = np.flatnonzero(np.diff(keys[order], prepend=~keys[order[:1]]))
+    is_tied = np.repeat(np.diff(starts, append=len(keys)) <= MOST_TIED, np.diff(starts, append=len(keys)))
+    is_tied[starts] = False
+    return np.where(is_tied, ~order, order)
 
 
 def cover(sheet: balls.Sheet, candidates: Ints, radii: Floats) -> Ints:
@@ -39,7 +46,8 @@ def cover(sheet: balls.Sheet, candidates: Ints, radii: Floats) -> Ints:
     sheet : Sheet
         The surface.
     candidates : (n,) ndarray of int
-        All vertices; each becomes a centre if it lies in the disc of no earlier one.
+        All vertices, as `turns` gives them; each becomes a centre if it lies in the disc of no earlier one that it is
+        not tied with.
     radii : (n,) ndarray of float
         Radius a vertex covers, in spacings.
     """

@@ -68,14 +68,10 @@ class EdgeTurnings:
             mesh.vertices, mesh.faces, mesh.outward_flips, self.normals, t.partners, self.halfedges, self.turnings
         )
 
-    @cached_property
+    @property
     def edge_of_halfedge(self) -> Indices:
         """(3 n_faces,): number of the edge of each half-edge; -1 for faces that take no part."""
-        index = np.full(3 * self.mesh.n_faces, -1, np.intp)
-        index[self.halfedges] = np.arange(len(self.halfedges))
-        other = self.mesh.topology.partners[self.halfedges]
-        index[other[other >= 0]] = np.flatnonzero(other >= 0)
-        return read_only(index)
+        return self.mesh.topology.edge_of_halfedge
 
     @cached_property
     def gains(self) -> Floats:

@@ -8,7 +8,15 @@ from numpy.typing import NDArray
 from rinow import tolerances
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
-__all__ = ["crease_notes", "left_out_notes", "mesh_notes", "repeat_notes", "weld_notes"]
+__all__ = [
+    "crease_notes",
+    "left_out_notes",
+    "merge_notes",
+    "mesh_notes",
+    "repeat_notes",
+    "sheet_notes",
+    "weld_notes",
+]
 
 
 def weld_notes(before: int, after: int) -> tuple[str, ...]:
@@ -19,6 +27,29 @@ def weld_notes(before: int, after: int) -> tuple[str, ...]:
         f"The faces share no edge: vertices closer than {tolerances.WELD_DISTANCE:g} of the diagonal were taken as one "
         f"for the computation, {after} points for {before} vertices.",
     )
+
+
+def merge_notes(n_merged: int) -> tuple[str, ...]:
+    """What was done about vertices at the place of another one."""
+    if not n_merged:
+        return ()
+    return (
+        f"{n_merged} vertices lie on others, across a seam or an edge without length: those at one place were taken as "
+        "one for the computation, and have the same values.",
+    )
+
+
+def sheet_notes(n_fins: int, n_meet: int) -> tuple[str, ...]:
+    """What was done where more than one sheet meets, at so many vertices."""
+    notes: tuple[str, ...] = ()
+    if n_fins:
+        notes += (f"{n_fins} faces stand on an edge of two others and were left out.",)
+    if n_meet:
+        notes += (
+            f"At {n_meet} vertices sheets of the surface meet: each was computed by itself, and the values there are "
+            "those of the largest (status NONMANIFOLD).",
+        )
+    return notes
 
 
 def repeat_notes(n_repeated: int) -> tuple[str, ...]:
@@ -61,8 +92,8 @@ def mesh_notes(mesh: TriangleMesh | IntrinsicMesh, *, oriented: bool) -> tuple[s
         n_seam = _seam_size(mesh)
         if n_seam:
             notes.append(
-                f"{n_seam} boundary vertices lie on others: these seams are open; `TriangleMesh.welded`, or --weld on "
-                "the command line, closes them."
+                f"{n_seam} boundary vertices lie on others, where sheets cover each other or more than two edges meet: "
+                "they stay open."
             )
         if oriented:
             notes += _orientation_notes(mesh)

@@ -178,6 +178,7 @@ def blended_patches(
     """What `patches.mean_values` tells at the vertices of the sheet, and the variance of the noise."""
     between = scales(samples, sheet, at_edge)
     low, high, top, noise = windows(samples, between)
+    noise = in_half_octaves(noise, sheet.spacing**2)
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, samples.turns, core)
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
@@ -199,10 +200,17 @@ def blended_patches(
     fitting = ladder.fitting(
         patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
     )
-    add_patches(fitting, CORE * core, choice.risk, quality.power, totals, tasks, 0.2)
+    expected = in_half_octaves(choice.risk, sheet.spacing[centres] ** -4)
+    add_patches(fitting, CORE * core, expected, quality.power, totals, tasks, 0.2)
     out, direction1, direction2 = np.empty((len(totals), 6)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
     patches.mean_values(totals, sheet.normals, out, direction1, direction2)
     return out, direction1, direction2, noise
+
+
+def in_half_octaves(variances: Floats, unit: Floats) -> Floats:
+    """The nearest powers of √2 times the unit: as well as they are known; what is far away does not change them."""
+    with np.errstate(divide="ignore"):
+        return np.exp2(0.5 * np.round(2.0 * np.log2(variances / unit))) * unit
 
 
 def standard_errors(out: Floats, quality: Quality, at_boundary: NDArray[np.bool_]) -> Floats:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from rinow._printing import OneLine
 from rinow.curvature.cone_points import LEAST_DEFECT, cone_defects
 from rinow.curvature.creases import CreaseLines, EdgeTurnings, crease_lines_of
-from rinow.curvature.notes import mesh_notes, repeat_notes, weld_notes
+from rinow.curvature.notes import mesh_notes
+from rinow.curvature.repairs import repaired
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh
 
 __all__ = ["SingularFeatures", "singular_features"]
@@ -86,8 +87,8 @@ def singular_features(mesh: Any) -> SingularFeatures:
     ----------
     mesh : TriangleMesh, IntrinsicMesh, (V, F) pair, or object with vertices and faces
         The surface.  Edge lengths alone tell the cone points; creases and corners need positions.  A soup of
-        separate triangles is welded for the computation; features are named by the first vertex at each place.
-        Of faces with the same three vertices one is taken.
+        separate triangles is welded for the computation, seams are closed, and each face counts once; features are
+        named by the first vertex at each place.
 
     Returns
     -------
@@ -144,15 +145,8 @@ def singular_features(mesh: Any) -> SingularFeatures:
     (np.float64(90.0), np.float64(270.0))
     """
     surface = _in_safe_unit(as_mesh(mesh))
-    notes: tuple[str, ...] = ()
-    names = np.arange(surface.n_vertices)
-    if isinstance(surface, TriangleMesh) and surface.is_soup:
-        n = surface.n_vertices
-        surface, index = surface.welded()
-        names = np.unique(index, return_index=True)[1]
-        notes = weld_notes(n, surface.n_vertices)
-    surface, repeated = _without_repeats(surface)
-    notes += repeat_notes(repeated)
+    surface, index, notes = repaired(surface)
+    names = np.arange(surface.n_vertices) if index is None else np.unique(index, return_index=True)[1]
     notes += mesh_notes(surface, oriented=isinstance(surface, TriangleMesh))
     t = surface.topology
     closed = t.vertex_is_boundary | ~t.vertex_is_manifold
@@ -176,19 +170,6 @@ def _in_safe_unit(mesh: TriangleMesh | IntrinsicMesh) -> TriangleMesh | Intrinsi
         return IntrinsicMesh(mesh.faces, np.ldexp(mesh.edge_lengths, exponent), mesh.n_vertices)
     with np.errstate(over="ignore"):
         return TriangleMesh(np.ldexp(mesh.vertices, exponent), mesh.faces)
-
-
-def _without_repeats(mesh: TriangleMesh | IntrinsicMesh) -> tuple[TriangleMesh | IntrinsicMesh, int]:
-    """The mesh with one of all faces that have the same vertices, and how many were left out."""
-    if not mesh.topology.vertex_is_on_nonmanifold_edge.any():
-        return mesh, 0
-    first = np.sort(np.unique(np.sort(mesh.faces, axis=1), axis=0, return_index=True)[1])
-    if len(first) == mesh.n_faces:
-        return mesh, 0
-    n_repeated, faces = mesh.n_faces - len(first), mesh.faces[first]
-    if isinstance(mesh, IntrinsicMesh):
-        return IntrinsicMesh(faces, mesh.edge_lengths[first], mesh.n_vertices), n_repeated
-    return TriangleMesh(mesh.vertices, faces), n_repeated
 
 
 def _all_cone_points(mesh: TriangleMesh, lines: CreaseLines, corners: Indices, closed: Bools) -> tuple[Indices, Floats]:

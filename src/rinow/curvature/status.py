@@ -25,7 +25,7 @@ class VertexStatus(IntEnum):
     DEGENERATE = 3
     """nan: every face around the vertex is degenerate."""
     NONMANIFOLD = 4
-    """The faces around the vertex are not one fan; a value where the method has one, else nan."""
+    """The faces around the vertex are not one fan; the value of the largest one, or nan where the method has none."""
     NONFINITE = 5
     """nan: the position is nan or inf."""
     UNRESOLVED = 6

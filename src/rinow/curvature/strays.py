@@ -11,7 +11,6 @@ from scipy.spatial import KDTree
 from rinow.curvature.cloud_layers import DEVIATIONS, NEAREST, SPACINGS
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, cloud_strays, stencils
-from rinow.kernels.adjacency import BOUNDARY, NONMANIFOLD
 from rinow.mesh import TriangleMesh
 
 __all__ = ["spikes", "stray_vertices"]
@@ -27,10 +26,7 @@ ON_EDGE = 1e-12
 
 
 def stray_vertices(mesh: TriangleMesh) -> tuple[Bools, Indices, Indices]:
-    """Tips of fins and vertices on an edge of two others.
-
-    A fin is a face that stands on an edge with three or more faces and is joined to nothing else.  A vertex in the
-    middle of an edge, made by splitting it, lies on the chord, not on the surface.
+    """Vertices on an edge of two others, made by splitting it: they lie on the chord, not on the surface.
 
     Parameters
     ----------
@@ -44,7 +40,7 @@ def stray_vertices(mesh: TriangleMesh) -> tuple[Bools, Indices, Indices]:
     on_edge, ends : (k,) ndarray of intp
         Those on an edge, and for each the end of the edge that is nearer to it.
     """
-    is_stray = _fin_tips(mesh)
+    is_stray = np.zeros(mesh.n_vertices, np.bool_)
     L = mesh.edge_lengths
     a, b, c = L.T
     with np.errstate(invalid="ignore"):
@@ -86,16 +82,3 @@ def spikes(sheet: balls.Sheet) -> tuple[Indices, Indices]:
     found = offsets > np.maximum(DEVIATIONS * middles, SPACINGS * sheet.spacing[likely])
     is_spike = np.isin(near[found], likely[found])
     return likely[found], near[found, np.argmin(is_spike, axis=1)]
-
-
-def _fin_tips(mesh: TriangleMesh) -> Bools:
-    """(n_vertices,): all faces of the vertex are fins."""
-    t = mesh.topology
-    tips = np.zeros(mesh.n_vertices, np.bool_)
-    if not t.vertex_is_on_nonmanifold_edge.any():
-        return tips
-    partners = t.partners.reshape(-1, 3)
-    fins = ((partners == NONMANIFOLD).sum(axis=1) == 1) & ((partners == BOUNDARY).sum(axis=1) == 2)
-    tips[t.faces[fins]] = True
-    tips[t.faces[~fins & t.face_used]] = False
-    return tips & ~t.vertex_is_on_nonmanifold_edge

@@ -61,16 +61,23 @@ def disc(v, radius, epoch, vertices, offsets, neighbours, marks, members):
 
 @kernel
 def cover(candidates, radii, sheet, centres):
-    """Write each candidate that lies in the disc of no earlier one; how many."""
+    """Write each candidate that lies in the disc of none before those it is tied with; how many.
+
+    A negative number ~v is that of a vertex v tied with the one before.
+    """
     n = len(sheet.vertices)
     marks, members, is_covered = np.zeros(n, np.int32), np.empty(n + 1, np.int32), np.zeros(n, np.bool_)
-    surface, count = (sheet.vertices, sheet.offsets, sheet.neighbours), 0
-    for v in candidates:
+    surface, count, first = (sheet.vertices, sheet.offsets, sheet.neighbours), 0, 0
+    for i in range(n):
+        v = max(candidates[i], ~candidates[i])
         if not is_covered[v]:
             centres[count] = v
             count += 1
-            for i in range(disc(v, radii[v], count, *surface, marks, members)):
-                is_covered[members[i]] = True
+        if i + 1 == n or candidates[i + 1] >= 0:
+            for k in range(first, count):
+                for m in range(disc(centres[k], radii[centres[k]], k + 1, *surface, marks, members)):
+                    is_covered[members[m]] = True
+            first = count
     return count
 
 

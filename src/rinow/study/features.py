@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.repairs import repaired
 from rinow.curvature.singular import SingularFeatures, singular_features
 from rinow.mesh import TriangleMesh
-from rinow.study.seams import without_seams
 
 __all__ = ["FIELDS", "FeatureStudy", "study_features"]
 
@@ -85,24 +85,19 @@ class FeatureStudy:
         return {name: values[self.names] for name, values in data.items()}
 
 
-def study_features(mesh: TriangleMesh, *, weld: bool = False) -> FeatureStudy:
+def study_features(mesh: TriangleMesh) -> FeatureStudy:
     """Find the singular points of a surface.
 
     Parameters
     ----------
     mesh : TriangleMesh
         The surface.
-    weld : bool, default False
-        Take vertices at one place as one, so that seams are closed, as is always done for separate triangles.
 
     Returns
     -------
     study : FeatureStudy
         The features and what is needed to read them.
     """
-    if not (weld or mesh.is_soup):
-        return FeatureStudy(mesh, singular_features(mesh), np.arange(mesh.n_vertices))
-    surface, index, notes = without_seams(mesh)
-    found, first = singular_features(surface), np.unique(index, return_index=True)[1]
-    named = {name: first[getattr(found, name)] for name in ("cone_points", "crease_edges", "corners")}
-    return FeatureStudy(mesh, replace(found, **named, notes=notes + found.notes), first[index])
+    index = repaired(mesh)[1]
+    names = np.arange(mesh.n_vertices) if index is None else np.unique(index, return_index=True)[1][index]
+    return FeatureStudy(mesh, singular_features(mesh), names)

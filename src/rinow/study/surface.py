@@ -5,16 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.status import VertexStatus
-from rinow.curvature.surface import SurfaceCurvature, relabelled, surface_curvature
+from rinow.curvature.surface import SurfaceCurvature, surface_curvature
 from rinow.mesh import TriangleMesh
-from rinow.study.seams import without_seams
 
 __all__ = ["FIELDS", "SIGNED", "STATUSES", "CurvatureStudy", "SurfaceStudy", "mesh_counts", "study_surface"]
 
@@ -190,7 +189,6 @@ def study_surface(
     method: str = "auto",
     quality: str = "best",
     radius: float | None = None,
-    weld: bool = False,
     unit: str = "length",
     progress: Any = None,
 ) -> SurfaceStudy:
@@ -202,8 +200,6 @@ def study_surface(
         The surface.
     method, quality, radius, progress
         As for `rinow.surface_curvature`.
-    weld : bool, default False
-        Take vertices at one place as one, so that seams are closed; each has its value.
     unit : str, optional
         Name of the unit of length of the positions.
 
@@ -213,9 +209,6 @@ def study_surface(
         The curvature and what is needed to read it.
     """
     start = time.perf_counter()
-    surface, index, notes = without_seams(mesh) if weld else (mesh, None, ())
-    curvature = surface_curvature(surface, method=method, quality=quality, radius=radius, progress=progress)
-    curvature = replace(relabelled(curvature, index), notes=notes + curvature.notes)
+    curvature = surface_curvature(mesh, method=method, quality=quality, radius=radius, progress=progress)
     seconds = {"curvature": time.perf_counter() - start}
-    settings: dict[str, str | float | None] = {"method": method, "quality": quality, "radius": radius}
-    return SurfaceStudy(curvature, unit, seconds, settings, mesh=mesh)
+    return SurfaceStudy(curvature, unit, seconds, {"method": method, "quality": quality, "radius": radius}, mesh=mesh)

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from rinow.mesh import TriangleMesh
+from rinow.curvature.repairs import repaired
+from rinow.mesh import TriangleMesh, as_triangle_mesh
 
 __all__ = ["SurfaceTotals", "surface_totals"]
 
@@ -57,7 +58,7 @@ def surface_totals(mesh: TriangleMesh, gaussian: NDArray[np.float64]) -> Surface
     Parameters
     ----------
     mesh : TriangleMesh
-        The surface; one of separate triangles is welded, as for its curvature.
+        The surface; it is welded, and each face counts once, as for its curvature.
     gaussian : (n_vertices,) ndarray of float
         Gaussian curvature at its vertices, in 1/length²; nan where undefined.
 
@@ -75,10 +76,11 @@ def surface_totals(mesh: TriangleMesh, gaussian: NDArray[np.float64]) -> Surface
     >>> totals.area, totals.boundary_curves, round(totals.boundary_turning / np.pi, 12)
     (1.0, 1, 2.0)
     """
-    if mesh.is_soup:
-        mesh, vertex_map = mesh.welded()
+    surface, index, _ = repaired(mesh)
+    mesh = as_triangle_mesh(surface)
+    if index is not None:
         values, gaussian = gaussian, np.full(mesh.n_vertices, np.nan)
-        gaussian[vertex_map] = values
+        gaussian[index] = values
     topology, defects = mesh.topology, mesh.vertex_angle_defects
     on_boundary = topology.vertex_is_boundary
     known = np.isfinite(gaussian)

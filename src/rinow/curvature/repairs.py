@@ -1,0 +1,181 @@
+"""A mesh as the curvature methods take it: one vertex at one place, each face once, and sheets that meet apart."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.curvature.estimate import Estimate
+from rinow.curvature.notes import merge_notes, repeat_notes, sheet_notes, weld_notes
+from rinow.kernels import cuts
+from rinow.kernels.adjacency import BOUNDARY, NONMANIFOLD
+from rinow.mesh import IntrinsicMesh, TriangleMesh, merged
+
+__all__ = ["Sheets", "repaired", "sheets_of", "without_repeats"]
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+Mesh = TriangleMesh | IntrinsicMesh
+
+POINT = 1e-6
+"""An edge this short beside the other sides of its faces is a point, and so are ends of two seams this near each other
+beside the shortest edge of both: far above rounding, far below what anybody models."""
+
+
+def repaired(mesh: Mesh) -> tuple[Mesh, Indices | None, tuple[str, ...]]:
+    """The surface that a mesh stands for.
+
+    Vertices of a soup are welded, the ends of edges without length and the two sides of a seam are taken as one vertex,
+    and each face once.  A seam is a pair of boundary edges at the same place, as the edges of a texture leave it; two
+    sheets that lie on each other are none.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh or IntrinsicMesh
+        The surface; seams are seen by positions only.
+
+    Returns
+    -------
+    surface : TriangleMesh or IntrinsicMesh
+        `mesh` itself if there is nothing to do.
+    index : (n_vertices,) ndarray of intp, or None
+        The vertex of `surface` for each one of `mesh`, if they are other ones.
+    notes : tuple of str
+        What was done.
+    """
+    n, index, notes = mesh.n_vertices, None, ()
+    if isinstance(mesh, TriangleMesh) and mesh.is_soup:
+        mesh, index = mesh.welded()
+        notes = weld_notes(n, mesh.n_vertices)
+    before = mesh.n_vertices
+    for pairs_of in (_edges_without_length, _seams):
+        pairs = pairs_of(mesh)
+        if len(pairs):
+            mesh, new = merged(mesh, pairs)
+            index = new if index is None else new[index]
+    notes += merge_notes(before - mesh.n_vertices)
+    mesh, n_repeated = without_repeats(mesh)
+    return mesh, index, notes + repeat_notes(n_repeated)
+
+
+def _edges_without_length(mesh: Mesh) -> Indices:
+    """(k, 2): ends of edges that are points beside the other sides of all their faces."""
+    t, share = mesh.topology, POINT if isinstance(mesh, TriangleMesh) else 0.0
+    a, b, c = mesh.edge_lengths.T
+    with np.errstate(invalid="ignore"):
+        short = np.stack([x <= share * np.minimum(y, z) for x, y, z in ((c, a, b), (a, b, c), (b, c, a))], axis=1)
+    short[~t.face_used] = False
+    h = np.flatnonzero(short)  # in the order of the half-edges
+    other = t.partners[h]
+    return t.halfedge_ends(h[(other < 0) | short.ravel()[other]])
+
+
+def _seams(mesh: Mesh) -> Indices:
+    """(k, 2): vertices of two boundary edges that lie on each other."""
+    t = mesh.topology
+    h = np.flatnonzero(t.partners == BOUNDARY)
+    if len(h) < 2 or isinstance(mesh, IntrinsicMesh):
+        return np.empty((0, 2), np.intp)
+    V, ends = mesh.vertices, t.halfedge_ends(h)
+    lengths = np.linalg.norm(V[ends[:, 0]] - V[ends[:, 1]], axis=1)
+    place = _places(V, ends, lengths)
+    _, group, size = np.unique(np.sort(place[ends], axis=1), axis=0, return_inverse=True, return_counts=True)
+    group = group.ravel()
+    order = np.argsort(group, kind="stable")
+    i, j = order[size[group[order]] == 2].reshape(-1, 2).T
+    apexes = V[mesh.faces[h // 3, (h % 3 + 2) % 3]]
+    apart = np.linalg.norm(apexes[i] - apexes[j], axis=1) > POINT * lengths[i]
+    i, j = i[apart], j[apart]
+    turned = place[ends[i, 0]] != place[ends[j, 0]]
+    theirs = np.where(turned[:, None], ends[j, ::-1], ends[j])
+    pairs = np.stack([ends[i], theirs], axis=2).reshape(-1, 2)
+    return pairs[pairs[:, 0] != pairs[:, 1]]
+
+
+def _places(vertices: Floats, ends: Indices, lengths: Floats) -> Indices:
+    """(n_vertices,): the same number for vertices of edges at the same place."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import KDTree
+
+    n, rows = len(vertices), np.unique(ends)
+    least = np.full(n, np.inf)
+    np.minimum.at(least, ends.ravel(), np.repeat(lengths, 2))
+    pairs = rows[KDTree(vertices[rows]).query_pairs(POINT * float(np.median(lengths)), output_type="ndarray")]
+    gaps = np.linalg.norm(vertices[pairs[:, 0]] - vertices[pairs[:, 1]], axis=1)
+    pairs = pairs[gaps <= POINT * least[pairs].min(axis=1)]
+    links = coo_array((np.ones(len(pairs), np.bool_), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    return connected_components(links, directed=False)[1].astype(np.intp)
+
+
+def without_repeats(mesh: Mesh) -> tuple[Mesh, int]:
+    """The mesh with one of all faces that have the same vertices, and how many were left out."""
+    if not mesh.topology.vertex_is_on_nonmanifold_edge.any():
+        return mesh, 0
+    first = np.sort(np.unique(np.sort(mesh.faces, axis=1), axis=0, return_index=True)[1])
+    return (mesh, 0) if len(first) == mesh.n_faces else (_with_faces(mesh, first), mesh.n_faces - len(first))
+
+
+def _with_faces(mesh: Mesh, rows: Indices) -> Mesh:
+    """The mesh with some of its faces."""
+    if isinstance(mesh, IntrinsicMesh):
+        return IntrinsicMesh(mesh.faces[rows], mesh.edge_lengths[rows], mesh.n_vertices)
+    return TriangleMesh(mesh.vertices, mesh.faces[rows])
+
+
+class Sheets(NamedTuple):
+    """A mesh whose vertices have one fan of faces each, and the vertex that each of them is a copy of."""
+
+    mesh: Mesh
+    origin: Indices
+    notes: tuple[str, ...]
+
+    def largest(self, estimate: Estimate, is_special: Bools, n: int) -> tuple[Estimate, Bools]:
+        """The values, and a mark, of the sheet with the largest area at each of n vertices, if it has a value."""
+        if len(self.origin) == n:
+            return estimate, is_special
+        order = np.lexsort((-self.mesh.vertex_areas, ~np.isfinite(estimate.gaussian), self.origin))
+        rows = order[np.searchsorted(self.origin[order], np.arange(n))]
+        return estimate.at(rows), is_special[rows]
+
+
+def sheets_of(mesh: Mesh) -> Sheets:
+    """The sheets of a surface that meet at edges with three or more faces, or at single vertices, each by itself.
+
+    A fin, a face that stands on such an edge and is joined to nothing else, is left out.
+    """
+    if not _meet(mesh).any():
+        return Sheets(mesh, np.arange(mesh.n_vertices), ())
+    fins = _fins(mesh)
+    if fins.any():
+        mesh = _with_faces(mesh, np.flatnonzero(~fins))
+    notes = sheet_notes(int(fins.sum()), int(_meet(mesh).sum()))
+    t, n_corners, origin = mesh.topology, 3 * mesh.n_faces, np.arange(mesh.n_vertices)
+    labels, numbers, faces = np.empty(n_corners, np.intp), np.empty(n_corners, np.intp), mesh.faces.copy()
+    rows = t.corner_offsets, t.vertex_corners
+    cuts.sectors(mesh.faces, *rows, t.partners, np.zeros(n_corners, np.bool_), labels)
+    origin = np.resize(origin, mesh.n_vertices + n_corners)
+    n = cuts.number_sectors(mesh.n_vertices, *rows, labels, faces, origin, numbers)
+    if isinstance(mesh, IntrinsicMesh):
+        return Sheets(IntrinsicMesh(faces, mesh.edge_lengths, n), origin[:n], notes)
+    faces[mesh.outward_flips] = faces[mesh.outward_flips, ::-1]
+    return Sheets(TriangleMesh(mesh.vertices[origin[:n]], faces), origin[:n], notes)
+
+
+def _meet(mesh: Mesh) -> Bools:
+    """(n_vertices,): sheets meet at the vertex."""
+    return mesh.topology.vertex_is_used & ~mesh.topology.vertex_is_manifold
+
+
+def _fins(mesh: Mesh) -> Bools:
+    """(n_faces,): the face stands on an edge of others and is joined to nothing else."""
+    t = mesh.topology
+    partners = t.partners.reshape(-1, 3)
+    alone = ((partners == NONMANIFOLD).sum(axis=1) == 1) & ((partners == BOUNDARY).sum(axis=1) == 2)
+    stands = np.where(partners == NONMANIFOLD, t.edge_of_halfedge.reshape(-1, 3), -1)
+    counts = np.bincount(stands[~alone & t.face_used].ravel() + 1, minlength=t.n_edges + 1)
+    counts[0] = 0
+    return alone & (counts[stands.max(axis=1) + 1] > 0)
