@@ -7,7 +7,7 @@ import numpy as np
 
 from rinow.kernels import nested_fits
 from rinow.kernels._jit import inner
-from rinow.kernels.nested_fits import N_ORDERS
+from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 from rinow.kernels.osculating_torus import offset_forms
 
 N_BIASES = N_ORDERS - 2
@@ -25,15 +25,17 @@ class Tables(NamedTuple):
 
     variance (T, 7): of the curvatures, nan without a fit; bias (T, 5): squared differences to the order two above;
     bias_variance (T, 5): their variances; leverage (T, 7): points times variance of the mean curvature for unit noise;
-    jump (T, 7): squared differences to the quadric of the least ball that also has order 4, nan before it;
-    second (T, 7) and noise (T, 7), or no rows: variance of second order and residual variance, for unknown noise.
+    step (T, 7): squared differences to the same order in the next smaller ball, less their variances;
+    step_variance, second and noise (T, 7), or no rows: for unknown noise these variances, which then are still to be
+    subtracted, the variance of second order, and the residual variance.
     """
 
     variance: np.ndarray
     bias: np.ndarray
     bias_variance: np.ndarray
     leverage: np.ndarray
-    jump: np.ndarray
+    step: np.ndarray
+    step_variance: np.ndarray
     second: np.ndarray
     noise: np.ndarray
 
@@ -70,8 +72,9 @@ def write_no_row(t, tables):
     tables.bias[t, :] = np.nan
     tables.bias_variance[t, :] = np.nan
     tables.leverage[t, :] = 0.0
-    tables.jump[t, :] = np.nan
+    tables.step[t, :] = np.nan
     if tables.second.shape[0]:
+        tables.step_variance[t, :] = np.nan
         tables.second[t, :] = np.nan
         tables.noise[t, :] = np.nan
 
@@ -138,9 +141,33 @@ def write_row(t, count, top, share, k1, k2, s2, fit, tables, values, gradients):
 
 
 @inner
+def write_steps(t, top, share, s2, fit, tables, values, gradients, smaller):
+    """Write the squared differences of the orders 2..top to those in a smaller ball, which is replaced by this one.
+
+    Of least squares over nested balls the larger one has no covariance with the difference, whose variance therefore is
+    the difference of the variances.
+    """
+    known = tables.second.shape[0] == 0
+    for d in range(2, top + 1):
+        if math.isnan(values[d, 0]):
+            continue
+        before, c = smaller[d], fit.covariances[d]
+        if not math.isnan(before[0]):
+            less = sum_of_forms(gradients[d], share, before[2:]) - sum_of_forms(gradients[d], share, c)
+            v = s2 * max(less, 0.0)
+            e2 = squared_difference(values[d, 0], values[d, 1], before[0], before[1])
+            tables.step[t, d - 2] = e2 - (v if known else 0.0)
+            if not known:
+                tables.step_variance[t, d - 2] = v
+        before[0], before[1] = values[d, 0], values[d, 1]
+        for k in range(6):
+            before[2 + k] = c[k]
+
+
+@inner
 def write_rows(t, points, n, reaches, order, share, k1, k2, s2, fit, tables, values, gradients):
     """Write one row for each of some nested balls from row t on; of one-sided ones each has an origin of its own."""
-    before, apart, first, second = 0.0, False, np.nan, np.nan
+    before, apart, smaller = 0.0, False, np.full((MAX_ORDER + 1, 8), np.nan)
     if order >= 2:
         apart = nested_fits.place_origin(points, n, reaches[-1], fit)
         if not apart:
@@ -158,7 +185,4 @@ def write_rows(t, points, n, reaches, order, share, k1, k2, s2, fit, tables, val
         before = count
         top = nested_fits.fit_orders(shell, reaches[k], top, fit)
         write_row(t + k, count, top, share, k1, k2, s2, fit, tables, values, gradients)
-        if math.isnan(first) and not math.isnan(tables.bias[t + k, 0]):
-            first, second = values[2, 0], values[2, 1]
-        for d in range(2, top + 1):
-            tables.jump[t + k, d - 2] = squared_difference(values[d, 0], values[d, 1], first, second)
+        write_steps(t + k, top, share, s2, fit, tables, values, gradients, smaller)
