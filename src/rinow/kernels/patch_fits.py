@@ -156,7 +156,7 @@ def write_steps(t, top, share, s2, fit, tables, values, gradients, smaller):
             less = sum_of_forms(gradients[d], share, before[2:]) - sum_of_forms(gradients[d], share, c)
             v = s2 * max(less, 0.0)
             e2 = squared_difference(values[d, 0], values[d, 1], before[0], before[1])
-            tables.step[t, d - 2] = e2 - (v if known else 0.0)
+            tables.step[t, d - 2] = e2 - (2.0 * v if known else 0.0)
             if not known:
                 tables.step_variance[t, d - 2] = v
         before[0], before[1] = values[d, 0], values[d, 1]
