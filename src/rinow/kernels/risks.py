@@ -12,6 +12,8 @@ KAPPA = 0.2
 """The squared bias is at least this share of the variance of the comparison that shows it."""
 DECAY = 10.0
 """The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
+ODD = 0.5
+"""The squared bias of an odd order is at least this share of the lesser one of the even orders beside it."""
 UNSEEN = 0.3
 """Bias, over the inverse square of the radius, of a quadric where nothing is there to compare it with."""
 CLEAR = 0.05
@@ -69,7 +71,8 @@ def squared_biases(t, ratio, upper, tables, bias, bias_variance, step, out):
 
     A truncation error of order d is at most r^(d+1) times the square root of points times variance.  Orders over a ball
     too large for any of them may agree with each other by chance, and the two highest have none above; but a bias that
-    grows like r^d differs from that of a smaller ball by most of itself.
+    grows like r^d differs from that of a smaller ball by most of itself.  Odd terms hardly reach the second derivatives
+    at the centre, so that an odd order errs about as the even ones beside it.
     """
     for i in range(N_BIASES):
         own = not math.isnan(tables.variance[t, i + 2]) and not math.isnan(bias[t, i])
@@ -85,6 +88,10 @@ def squared_biases(t, ratio, upper, tables, bias, bias_variance, step, out):
     for i in range(N_ORDERS):
         if step[t, i] > out[i]:
             out[i] = step[t, i]
+    for i in range(1, N_ORDERS, 2):
+        beside = min(out[i - 1], out[i + 1])
+        if beside > 0.0:
+            out[i] = max(out[i], ODD * beside)
 
 
 @parallel_kernel
