@@ -171,7 +171,7 @@ def _examine(
     known = patch_fits.Tables(
         (s2 * tables.variance + s2 * s2 * tables.second).astype(np.float32),
         (tables.bias - comparison).astype(np.float32), comparison.astype(np.float32),
-        tables.leverage, tables.step - 2.0 * s2 * tables.step_variance, *(x[:0] for x in tables[5:]),
+        tables.leverage, tables.step - s2 * tables.step_variance, *(x[:0] for x in tables[5:]),
     )  # fmt: skip
     logs = np.full((m, n_radii, N_ORDERS), np.nan)
     power = 2 if errors_of == MEAN else 4

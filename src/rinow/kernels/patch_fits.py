@@ -141,25 +141,28 @@ def write_row(t, count, top, share, k1, k2, s2, fit, tables, values, gradients):
 
 
 @inner
-def write_steps(t, top, share, s2, fit, tables, values, gradients, smaller):
-    """Write the squared differences of the orders 2..top to those in a smaller ball, which is replaced by this one.
+def write_steps(t, reach, top, share, s2, fit, tables, values, gradients, smaller):
+    """Write what the orders 2..top differ by from those in a smaller ball, which is then replaced by this one.
 
-    Of least squares over nested balls the larger one has no covariance with the difference, whose variance therefore is
-    the difference of the variances.
+    Of least squares over nested balls the larger one has no covariance with the difference, whose variance v therefore
+    is the difference of the variances; what exceeds 2v counts.  Truncation errors grow with the radius r like r^(d+1)
+    times the root of the leverage, unless the points of the smaller ball lie much worse: the squared difference is
+    divided between both by the squares of that.
     """
     known = tables.second.shape[0] == 0
     for d in range(2, top + 1):
         if math.isnan(values[d, 0]):
             continue
-        before, c = smaller[d], fit.covariances[d]
-        if not math.isnan(before[0]):
-            less = sum_of_forms(gradients[d], share, before[2:]) - sum_of_forms(gradients[d], share, c)
-            v = s2 * max(less, 0.0)
+        before, c, leverage = smaller[d], fit.covariances[d], tables.leverage[t, d - 2]
+        if before[9] > 0.0 and leverage > 0.0:
+            part = 1.0 / (1.0 + (before[8] / reach) ** (2 * (d + 1)) * before[9] / leverage)
+            less = sum_of_forms(gradients[d], share, before[2:8]) - sum_of_forms(gradients[d], share, c)
+            v = 2.0 * s2 * max(less, 0.0)
             e2 = squared_difference(values[d, 0], values[d, 1], before[0], before[1])
-            tables.step[t, d - 2] = e2 - (2.0 * v if known else 0.0)
+            tables.step[t, d - 2] = part * (e2 - (v if known else 0.0))
             if not known:
-                tables.step_variance[t, d - 2] = v
-        before[0], before[1] = values[d, 0], values[d, 1]
+                tables.step_variance[t, d - 2] = part * v
+        before[0], before[1], before[8], before[9] = values[d, 0], values[d, 1], reach, leverage
         for k in range(6):
             before[2 + k] = c[k]
 
@@ -167,7 +170,7 @@ def write_steps(t, top, share, s2, fit, tables, values, gradients, smaller):
 @inner
 def write_rows(t, points, n, reaches, order, share, k1, k2, s2, fit, tables, values, gradients):
     """Write one row for each of some nested balls from row t on; of one-sided ones each has an origin of its own."""
-    before, apart, smaller = 0.0, False, np.full((MAX_ORDER + 1, 8), np.nan)
+    before, apart, smaller = 0.0, False, np.zeros((MAX_ORDER + 1, 10))
     if order >= 2:
         apart = nested_fits.place_origin(points, n, reaches[-1], fit)
         if not apart:
@@ -185,4 +188,4 @@ def write_rows(t, points, n, reaches, order, share, k1, k2, s2, fit, tables, val
         before = count
         top = nested_fits.fit_orders(shell, reaches[k], top, fit)
         write_row(t + k, count, top, share, k1, k2, s2, fit, tables, values, gradients)
-        write_steps(t + k, top, share, s2, fit, tables, values, gradients, smaller)
+        write_steps(t + k, reaches[k], top, share, s2, fit, tables, values, gradients, smaller)
