@@ -248,9 +248,10 @@ def _least(
     """
     place = (spacing, power, rows, low, high, links)
     variance = _averaged(tables.variance, *place, 1)
-    averages = (_averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance, tables.step))
+    bias, bias_variance, step = (_averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance, tables.step))
+    averages = (variance, bias, bias_variance, step)
     choice = _empty_choice(len(spacing))
-    risks.least_risks(rows, low, high, ladder.reaches, tables, variance, *averages, *choice, logs)
+    risks.least_risks(rows, low, high, ladder.reaches, tables, *averages, *choice, logs)
     return choice._replace(risk=choice.risk / spacing**power)
 
 
