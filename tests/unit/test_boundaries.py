@@ -37,16 +37,20 @@ def errors_at_boundary(shape, **options):
     return np.array([np.sqrt(np.mean(e[ends] ** 2)) for e in errors])
 
 
-@pytest.mark.parametrize("quality", ["best", "fast"])
 @pytest.mark.parametrize("noise", [0.005, 0.02])
 @pytest.mark.parametrize("surface", [helicoid, cap])
-def test_choices_at_a_boundary_are_as_good_as_one_radius_for_all(surface, noise, quality):
-    shape = shapes.noisy(surface(), noise, seed=23)
-    h = TriangleMesh(shape.vertices, shape.faces).mean_edge_length
-    known = np.fmin.reduce([errors_at_boundary(shape, radius=r * h) for r in (3, 4, 5, 6, 8, 10, 13)])
-    # The best radius cannot be known without the errors.  By K alone H of the helicoid has 4 to 9 times its error.
-    chosen = errors_at_boundary(shape, quality=quality)
-    assert (chosen < 3.0 * known).all()
+def test_choices_at_a_boundary_are_as_good_as_one_radius_for_all(surface, noise):
+    ratios = {"best": [], "fast": []}
+    for seed in range(23, 27):
+        shape = shapes.noisy(surface(), noise, seed=seed)
+        h = TriangleMesh(shape.vertices, shape.faces).mean_edge_length
+        known = np.fmin.reduce([errors_at_boundary(shape, radius=r * h) for r in (3, 4, 5, 6, 8, 10, 13)])
+        for quality, found in ratios.items():
+            found.append(errors_at_boundary(shape, quality=quality) / known)
+    # The best radius cannot be known without the errors, and a boundary errs in few stretches, each as a whole: single
+    # samples have 0.2 to 5 times its error.  By K alone H of the helicoid has 4 to 9 times its error.
+    for found in ratios.values():
+        assert (np.exp(np.mean(np.log(found), axis=0)) < 3.0).all()
 
 
 def test_errors_of_both_are_the_sum_of_those_of_each():
@@ -64,7 +68,7 @@ def test_errors_of_both_are_the_sum_of_those_of_each():
 
     gaussian, mean, both = (tables(k) for k in (patch_fits.GAUSSIAN, patch_fits.MEAN, patch_fits.BOTH))
     curvedness = 0.5 * (0.4**2 + 1.1**2) * np.repeat(sheet.spacing[centres], 4)[:, None] ** 2
-    for name in ("variance", "bias", "bias_variance", "jump"):
+    for name in ("variance", "bias", "bias_variance", "step"):
         of_both, of_gaussian, of_mean = (getattr(t, name) for t in (both, gaussian, mean))
         assert np.isfinite(of_both).any()
         # Tables are of single precision, and biases differences of what they sum.

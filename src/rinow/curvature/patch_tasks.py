@@ -133,5 +133,5 @@ def _empty_tables(n_rows: int, known: bool) -> patch_fits.Tables:
     widths = (N_ORDERS, patch_fits.N_BIASES, patch_fits.N_BIASES, N_ORDERS, N_ORDERS)
     return patch_fits.Tables(
         *(np.empty((n_rows, width), np.float32) for width in widths),
-        *(np.empty((n_unknown, N_ORDERS), np.float32) for _ in range(2)),
+        *(np.empty((n_unknown, N_ORDERS), np.float32) for _ in range(3)),
     )

@@ -24,8 +24,6 @@ PILOT_RADII, PILOT_ORDER = 10, 6
 """Balls and orders of the fits over the tangent plane."""
 SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
 """Radius a sample covers, in spacings, for surfaces up to so many vertices: with and without refinement."""
-RESOLVED = 0.1
-"""Curvature, over the inverse spacing, up to which a mesh resolves its surface: large balls miss nothing there."""
 LEVEL, BENT = 2.0, 0.3
 """Factor by which the risk over a plane must be less than that over the torus for the plane to be taken, and how much
 errors of H count there beside those of K: on folds K shall decide."""
@@ -173,7 +171,7 @@ def _examine(
     known = patch_fits.Tables(
         (s2 * tables.variance + s2 * s2 * tables.second).astype(np.float32),
         (tables.bias - comparison).astype(np.float32), comparison.astype(np.float32),
-        tables.leverage, tables.jump, tables.second[:0], tables.noise[:0],
+        tables.leverage, tables.step - s2 * tables.step_variance, *(x[:0] for x in tables[5:]),
     )  # fmt: skip
     logs = np.full((m, n_radii, N_ORDERS), np.nan)
     power = 2 if errors_of == MEAN else 4
@@ -249,13 +247,11 @@ def _least(
     The tables, the largest arrays of all, are overwritten by their averages where two passes are made.
     """
     place = (spacing, power, rows, low, high, links)
-    own = tables.bias[:, :1].copy()
-    bias, bias_variance, jump = (_averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance, tables.jump))
-    tables = tables._replace(bias=own, bias_variance=bias_variance, jump=jump)
     variance = _averaged(tables.variance, *place, 1)
+    bias, bias_variance, step = (_averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance, tables.step))
+    averages = (variance, bias, bias_variance, step)
     choice = _empty_choice(len(spacing))
-    averages = (variance, bias, bias_variance, jump)
-    risks.least_risks(rows, low, high, ladder.reaches, tables, *averages, RESOLVED**power, *choice, logs)
+    risks.least_risks(rows, low, high, ladder.reaches, tables, *averages, *choice, logs)
     return choice._replace(risk=choice.risk / spacing**power)
 
 

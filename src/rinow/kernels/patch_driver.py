@@ -52,7 +52,7 @@ class Work(NamedTuple):
 
 
 @lean
-def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients):
+def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients, smaller):
     """Grow the balls about one centre, fit, and write what the task asks for."""
     ball, fit = work.ball, work.fit
     v, frame, order = centres.vertices[i], centres.frames[i], centres.orders[i]
@@ -73,7 +73,9 @@ def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work
     if task == TABLES:
         k1, k2, s2 = frame[9] * spacing, frame[10] * spacing, centres.noise[i] / (spacing * spacing)
         share = patch_fits.shares(errors_of, centres.curvedness[i] * spacing)
-        patch_fits.write_rows(start, ball.points, size, own, asked, share, k1, k2, s2, fit, tables, values, gradients)
+        patch_fits.write_rows(
+            start, ball.points, size, own, asked, share, k1, k2, s2, fit, tables, values, gradients, smaller
+        )
         for t in range(start + len(own), stop):
             patch_fits.write_no_row(t, tables)
     elif asked >= 2:
@@ -96,5 +98,6 @@ def treat_all(task, errors_of, reaches, most, centres, sheet, tables, frames, ou
     ball, fit = balls.ball(sheet.vertices.shape[0], most), nested_fits.fits(len(reaches))
     work = Work(ball, fit, np.empty(len(reaches)), np.empty(TERMS[MAX_ORDER]))
     values, gradients = np.empty((MAX_ORDER + 1, 2)), np.empty((MAX_ORDER + 1, 2, 3))
+    smaller = np.empty((MAX_ORDER + 1, 10))
     for i in prange(len(centres.vertices)):
-        treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients)
+        treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work, values, gradients, smaller)

@@ -25,15 +25,17 @@ class Tables(NamedTuple):
 
     variance (T, 7): of the curvatures, nan without a fit; bias (T, 5): squared differences to the order two above;
     bias_variance (T, 5): their variances; leverage (T, 7): points times variance of the mean curvature for unit noise;
-    jump (T, 7): squared differences to the quadric of the least ball that also has order 4, nan before it;
-    second (T, 7) and noise (T, 7), or no rows: variance of second order and residual variance, for unknown noise.
+    step (T, 7): squared differences to the same order in the next smaller ball, less their variances;
+    step_variance, second and noise (T, 7), or no rows: for unknown noise these variances, which then are still to be
+    subtracted, the variance of second order, and the residual variance.
     """
 
     variance: np.ndarray
     bias: np.ndarray
     bias_variance: np.ndarray
     leverage: np.ndarray
-    jump: np.ndarray
+    step: np.ndarray
+    step_variance: np.ndarray
     second: np.ndarray
     noise: np.ndarray
 
@@ -70,8 +72,9 @@ def write_no_row(t, tables):
     tables.bias[t, :] = np.nan
     tables.bias_variance[t, :] = np.nan
     tables.leverage[t, :] = 0.0
-    tables.jump[t, :] = np.nan
+    tables.step[t, :] = np.nan
     if tables.second.shape[0]:
+        tables.step_variance[t, :] = np.nan
         tables.second[t, :] = np.nan
         tables.noise[t, :] = np.nan
 
@@ -138,9 +141,37 @@ def write_row(t, count, top, share, k1, k2, s2, fit, tables, values, gradients):
 
 
 @lean
-def write_rows(t, points, n, reaches, order, share, k1, k2, s2, fit, tables, values, gradients):
+def write_steps(t, reach, top, share, s2, fit, tables, values, gradients, smaller):
+    """Write what the orders 2..top differ by from those in a smaller ball, which is then replaced by this one.
+
+    Of least squares over nested balls the larger one has no covariance with the difference, whose variance v therefore
+    is the difference of the variances; what exceeds 2v counts.  Truncation errors grow with the radius r like r^(d+1)
+    times the root of the leverage, unless the points of the smaller ball lie much worse: the squared difference is
+    divided between both by the squares of that.
+    """
+    known = tables.second.shape[0] == 0
+    for d in range(2, top + 1):
+        if math.isnan(values[d, 0]):
+            continue
+        before, c, leverage = smaller[d], fit.covariances[d], tables.leverage[t, d - 2]
+        if before[9] > 0.0 and leverage > 0.0:
+            part = 1.0 / (1.0 + (before[8] / reach) ** (2 * (d + 1)) * before[9] / leverage)
+            less = sum_of_forms(gradients[d], share, before[2:8]) - sum_of_forms(gradients[d], share, c)
+            v = 2.0 * s2 * max(less, 0.0)
+            e2 = squared_difference(values[d, 0], values[d, 1], before[0], before[1])
+            tables.step[t, d - 2] = part * (e2 - (v if known else 0.0))
+            if not known:
+                tables.step_variance[t, d - 2] = part * v
+        before[0], before[1], before[8], before[9] = values[d, 0], values[d, 1], reach, leverage
+        for k in range(6):
+            before[2 + k] = c[k]
+
+
+@lean
+def write_rows(t, points, n, reaches, order, share, k1, k2, s2, fit, tables, values, gradients, smaller):
     """Write one row for each of some nested balls from row t on; of one-sided ones each has an origin of its own."""
-    before, apart, first, second = 0.0, False, np.nan, np.nan
+    before, apart = 0.0, False
+    smaller[:] = 0.0
     if order >= 2:
         apart = nested_fits.place_origin(points, n, reaches[-1], fit)
         if not apart:
@@ -158,7 +189,4 @@ def write_rows(t, points, n, reaches, order, share, k1, k2, s2, fit, tables, val
         before = count
         top = nested_fits.fit_orders(shell, reaches[k], top, fit)
         write_row(t + k, count, top, share, k1, k2, s2, fit, tables, values, gradients)
-        if math.isnan(first) and not math.isnan(tables.bias[t + k, 0]):
-            first, second = values[2, 0], values[2, 1]
-        for d in range(2, top + 1):
-            tables.jump[t + k, d - 2] = squared_difference(values[d, 0], values[d, 1], first, second)
+        write_steps(t + k, reaches[k], top, share, s2, fit, tables, values, gradients, smaller)

@@ -14,8 +14,6 @@ DECAY = 10.0
 """The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
 ODD = 0.5
 """The squared bias of an odd order is at least this share of the lesser one of the even orders beside it."""
-EXPLAINED = 3.0
-"""A difference between a large and a small ball is a bias of the large one beyond so many squared errors."""
 UNSEEN = 0.3
 """Bias, over the inverse square of the radius, of a quadric where nothing is there to compare it with."""
 CLEAR = 0.05
@@ -68,12 +66,13 @@ def median_rows(values, links, starts, out):
 
 
 @inner
-def squared_biases(t, ratio, upper, tables, bias, bias_variance, out):
+def squared_biases(t, ratio, upper, tables, bias, bias_variance, step, out):
     """Write the squared bias of each order; where the order two above is missing, from the next larger ball `upper`.
 
-    A truncation error of order d is at most r^(d+1) times the square root of points times variance.  Odd terms hardly
-    reach the second derivatives at the centre, so that an odd order errs about as the even ones beside it: where two
-    odd orders agree by chance, those do not.
+    A truncation error of order d is at most r^(d+1) times the square root of points times variance.  Orders over a ball
+    too large for any of them may agree with each other by chance, and the two highest have none above; but a bias that
+    grows like r^d differs from that of a smaller ball by most of itself.  Odd terms hardly reach the second derivatives
+    at the centre, so that an odd order errs about as the even ones beside it.
     """
     for i in range(N_BIASES):
         own = not math.isnan(tables.variance[t, i + 2]) and not math.isnan(bias[t, i])
@@ -86,49 +85,34 @@ def squared_biases(t, ratio, upper, tables, bias, bias_variance, out):
     for i in range(N_BIASES, N_ORDERS):
         lower = out[i - 4]
         out[i] = out[i - 2] * min(1.0, DECAY * out[i - 2] / lower) if lower > 0.0 else out[i - 2]
+    for i in range(N_ORDERS):
+        if step[t, i] > out[i]:
+            out[i] = step[t, i]
     for i in range(1, N_ORDERS, 2):
         beside = min(out[i - 1], out[i + 1])
         if beside > 0.0:
             out[i] = max(out[i], ODD * beside)
 
 
-@inner
-def tolerance(first, last, tables, variance, bias, bias_variance):
-    """Squared difference from the quadric of the least ball that its own error explains; inf without one.
-
-    Orders over one large ball may agree with each other and all miss what a small ball shows.
-    """
-    for t in range(first, last + 1):
-        if not math.isnan(tables.bias[t, 0]):
-            error = max(tables.variance[t, 0], variance[t, 0]) + max(bias[t, 0], KAPPA * bias_variance[t, 0])
-            return EXPLAINED * error
-    return np.inf
-
-
 @parallel_kernel
-def least_risks(
-    rows, low, high, reaches, tables, variance, bias, bias_variance, jump, resolved, radius, order, risk, logs
-):
+def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance, step, radius, order, risk, logs):
     """Write radius index (-1: none), order and value of the least risk of each centre; logs (n, R, 7) unless empty."""
     for i in prange(len(low)):
         biases = np.empty(N_ORDERS)
         biases[:] = np.nan
         best, best_radius, best_order, upper, last, fallback = np.inf, -1, 0, -1, 0, -1
-        allowed = resolved + tolerance(rows[i], rows[i] + high[i] - low[i], tables, variance, bias, bias_variance)
         for k in range(high[i] - low[i], -1, -1):
             t = rows[i] + k
             if math.isnan(tables.variance[t, 0]):
                 continue
             ratio = reaches[low[i] + k] / reaches[last] if upper >= 0 else 1.0
-            squared_biases(t, ratio, upper, tables, bias, bias_variance, biases)
+            squared_biases(t, ratio, upper, tables, bias, bias_variance, step, biases)
             upper, last = t, low[i] + k
             floor = ROUNDING * ROUNDING * (1.0 + math.log(reaches[low[i] + k] / MIDDLE) ** 2)
             for d in range(N_ORDERS):
                 if math.isnan(tables.variance[t, d]) or math.isnan(biases[d]):
                     continue
-                excess = jump[t, d] - allowed
-                squared_bias = max(biases[d], excess) if excess > 0.0 else biases[d]
-                value = max(max(tables.variance[t, d], variance[t, d]) + squared_bias, floor)
+                value = max(max(tables.variance[t, d], variance[t, d]) + biases[d], floor)
                 if len(logs):
                     logs[i, low[i] + k, d] = math.log(value)
                 if value <= best:  # the highest order below the error of rounding
