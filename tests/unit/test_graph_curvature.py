@@ -233,6 +233,17 @@ def test_loops_parallels_and_zero_lengths():
     assert np.isnan(rinow.graph_curvature(nx.empty_graph(3)).nodes).all()
 
 
+@pytest.mark.parametrize("kind", ["wald", "menger", "haantjes"])
+def test_an_edge_of_infinite_length_is_none(kind):
+    graph = nx.complete_graph(5)
+    graph[0][1]["weight"] = np.inf
+    result = rinow.graph_curvature(graph, kind=kind)
+    graph.remove_edge(0, 1)
+    expected = rinow.graph_curvature(graph, kind=kind, weighted=False)
+    np.testing.assert_array_equal(result.edge_index, expected.edge_index)
+    np.testing.assert_array_equal(result.nodes, expected.nodes)
+
+
 @pytest.mark.parametrize(
     ("graph", "options", "message"),
     [

@@ -186,6 +186,9 @@ def test_faults_are_named():
     for radius in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(InvalidInputError, match="not a positive length; leave it out"):
             metric_space_curvature(np.ones((4, 4)) - np.eye(4), radius=radius)
+    for scale in (1e-200, 1e200):
+        with pytest.raises(InvalidInputError, match="their curvature is no number; scale them"):
+            metric_space_curvature(scale * (np.ones((6, 6)) - np.eye(6)))
     with pytest.raises(NotAMetricError, match="triangle inequality"):
         metric_space_curvature([[0, 1, 4], [1, 0, 2], [4, 2, 0]])
     with pytest.raises(InvalidInputError, match="geodesic_space makes one of a mesh"):

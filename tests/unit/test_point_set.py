@@ -84,7 +84,8 @@ def test_sets_without_a_fit_are_nan():
     tripod = np.array([[0, 1, 1, 1], [1, 0, 2, 2], [1, 2, 0, 2], [1, 2, 2, 0]])
     bad = 1.0 - np.eye(5)
     bad[0, 1] = 3
-    for D in (line, tripod, bad, np.zeros((4, 4)), np.full((4, 4), np.nan)):
+    huge, tiny = 1e200 * (1 - np.eye(6)), 1e-200 * (1 - np.eye(6))
+    for D in (line, tripod, bad, np.zeros((4, 4)), np.full((4, 4), np.nan), huge, tiny):
         fit = rinow.fit_curvature(D)
         assert np.isnan([fit.value, fit.standard_error, fit.residual]).all()
     # Six points in general position fit nowhere, but some curvature is best.

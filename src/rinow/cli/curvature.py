@@ -104,9 +104,7 @@ def curvature(
     with working(f"reading {mesh.name}"):
         surface = read_mesh(mesh)
     with working(f"curvature of {surface.n_vertices:,} vertices") as progress:
-        study = study_surface(
-            surface, method=method, quality=quality, radius=radius, unit=unit, progress=progress
-        )
+        study = study_surface(surface, method=method, quality=quality, radius=radius, unit=unit, progress=progress)
     features = None
     if report:
         with working(f"creases and corners of {surface.n_vertices:,} vertices"), study.timed("features"):

@@ -74,11 +74,11 @@ def geodesic_wald(mesh: TriangleMesh | IntrinsicMesh, radius: float) -> Estimate
 
     Notes
     -----
-    A star has up to eight vertices near the distance `radius`, in about equal directions, first one way round and then the
-    other from the vertex nearest to it; its sides and the chords between neighbours are exact geodesic distances.  The value is the only k at which the comparison angles at the
-    centre sum to 2π (Wald), which by Gauss and Bonnet is a mean of the curvature within.  On a mesh of a smooth surface
-    with edges of length h its error is of second order in `radius`, plus one of `(h/radius)²` or less: it converges if
-    the radius tends to 0 more slowly than h.
+    A star has up to eight vertices near the distance `radius`, in about equal directions, first one way round and then
+    the other from the vertex nearest to it; its sides and the chords between neighbours are exact geodesic distances.
+    The value is the only k at which the comparison angles at the centre sum to 2π (Wald), which by Gauss and Bonnet is
+    a mean of the curvature within.  On a mesh of a smooth surface with edges of length h its error is of second order
+    in `radius`, plus one of `(h/radius)²` or less: it converges if the radius tends to 0 more slowly than h.
     """
     ring = wald(mesh)
     values, radii = _both(mesh, np.full(mesh.n_vertices, radius), _star_values)

@@ -65,7 +65,7 @@ def graph_curvature(
     ----------
     graph : scipy sparse matrix of shape (n, n), or networkx graph
         The entries, or the edge attribute "weight" (1 where it is missing), are the lengths of the edges.  Loops
-        are left out; of parallel edges the shortest counts.
+        and edges of infinite length are left out; of parallel edges the shortest counts.
     kind : {"wald", "menger", "haantjes"}, optional
         "wald": the embedding curvature of quadruples of the node and three others around it.  "menger": the sum of
         the Menger curvatures of the triangles over an edge.  "haantjes": the sum of the Haantjes curvatures of the

@@ -24,7 +24,7 @@ N_BLOCKS = 16
 
 @dataclass(frozen=True)
 class Arcs:
-    """Arcs without loops and parallels, ordered by tail and head; an undirected edge is two arcs.
+    """Arcs of finite length without loops and parallels, ordered by tail and head; an undirected edge is two arcs.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ def as_arcs(graph: Any, directed: bool | None) -> Arcs:
     if not directed:
         tails, heads = np.concatenate([tails, heads]), np.concatenate([heads, tails])
         lengths = np.concatenate([lengths, lengths])
-    keep = tails != heads
+    keep = (tails != heads) & np.isfinite(lengths)
     tails, heads, lengths = tails[keep], heads[keep], lengths[keep]
     order = np.lexsort((lengths, heads, tails))
     tails, heads, lengths = tails[order], heads[order], lengths[order]

@@ -12,6 +12,7 @@ from rinow._arrays import as_floats
 from rinow._printing import OneLine
 from rinow.curvature.space_fit import N_ORDERS, fit_at_first
 from rinow.curvature.status import VertexStatus
+from rinow.embedding.point_set import LARGEST_DIAMETER
 from rinow.errors import InvalidInputError
 from rinow.metric_space import as_metric_space
 
@@ -96,7 +97,8 @@ def metric_space_curvature(space: Any, *, radius: float | None = None) -> Metric
     Raises
     ------
     InvalidInputError
-        If `space` is neither a space nor a square matrix, or `radius` is not positive.
+        If `space` is neither a space nor a square matrix, `radius` is not positive, or the distances reach less than
+        1e-152 or more than 1e152.
     NotAMetricError
         If the matrix is not a metric.
 
@@ -144,6 +146,9 @@ def metric_space_curvature(space: Any, *, radius: float | None = None) -> Metric
         if value.ndim or not 0.0 < value < np.inf:
             raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
         reach = float(value)
+    extent = float(D[np.isfinite(D)].max())
+    if extent and not 1.0 / LARGEST_DIAMETER < extent < LARGEST_DIAMETER:
+        raise InvalidInputError(f"distances reach {extent:.3g}, and their curvature is no number; scale them.")
     first = (D == 0.0).argmax(axis=1)  # the first of several points at distance 0
     distinct, place = np.unique(first, return_inverse=True)
     found = _of_distinct(D[np.ix_(distinct, distinct)], reach)

@@ -158,8 +158,8 @@ def surface_curvature(
     Notes
     -----
     All values are unchanged by rotations, shifts and renumbering, up to rounding, and scale as powers of length.
-    Only where several vertices are equally near the radius of "robinson", or of "wald" with one, as on structured meshes,
-    their order decides where the lines of these two begin.
+    Only where several vertices are equally near the radius of "robinson", or of "wald" with one, as on structured
+    meshes, their order decides where the lines of these two begin.
     "auto" and "sectional" take no data from beyond a crease.  A vertex on a crease has one curvature on each side: that
     of the side that bends most is given, so that the rim of a hole in a plate has the curvature of its wall.  Flat
     facets have 0, also at corners, whose curvature as points is infinite; `singular_features` has their angles.

@@ -14,10 +14,12 @@ from rinow._printing import OneLine
 from rinow.errors import InvalidInputError, NotAMetricError
 from rinow.kernels import point_sets
 
-__all__ = ["CurvatureFit", "Misfit", "fit_curvature", "least_misfit"]
+__all__ = ["LARGEST_DIAMETER", "CurvatureFit", "Misfit", "fit_curvature", "least_misfit"]
 
 Floats = NDArray[np.float64]
 
+LARGEST_DIAMETER = 2.0**505
+"""Distances beyond this, or below its inverse, have a curvature that is no number."""
 MAX_STEPS = 100
 SMALL_STEP = 1e-6
 """Steps below this are taken as they are, as long as each is less than half the last one: then they are rounding."""
@@ -62,7 +64,8 @@ def fit_curvature(distances: ArrayLike) -> CurvatureFit:
     -------
     CurvatureFit
         `value`, `standard_error` and `residual`; nan for a matrix that is not symmetric with zero diagonal, finite
-        and non-negative, and where the iteration finds no minimum (points of a line or a tree).
+        and non-negative, for diameters below 1e-152 or above 1e152, and where the iteration finds no minimum (points of
+        a line or a tree).
 
     Raises
     ------
@@ -182,7 +185,7 @@ def _fit(distances: Floats) -> tuple[float, float, float]:
     except NotAMetricError:
         return nothing
     diameter = float(D.max())
-    if diameter == 0:
+    if not 1.0 / LARGEST_DIAMETER < diameter < LARGEST_DIAMETER:
         return nothing
     order = np.argsort(D.max(axis=1), kind="stable")
     misfit = least_misfit(D[np.ix_(order, order)] / diameter)

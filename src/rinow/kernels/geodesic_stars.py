@@ -76,8 +76,8 @@ def first_direction(ball, begin, end, radius):
 def choose_ends(ball, offsets, totals, is_boundary, share, radii, entries, bends):
     """Write the ends of four lines through each centre as entries of its ball, -1 for none, and the bends of the lines.
 
-    The first line leaves towards the entry nearest to the radius.  A bend is the angle by which the second end is beyond
-    the straight continuation.  The radii are cut short at the boundary, and to `share` of that.
+    The first line leaves towards the entry nearest to the radius.  A bend is the angle by which the second end is
+    beyond the straight continuation.  The radii are cut short at the boundary, and to `share` of that.
     """
     for i in prange(radii.shape[0]):
         begin, end, full = offsets[i], offsets[i + 1], totals[i]
