@@ -25,8 +25,9 @@ from rinow._arrays import (
 from rinow.errors import InvalidInputError, InvalidMeshError
 from rinow.kernels import triangles
 from rinow.polyhedral_surface import PolyhedralSurface
+from rinow.topology import clusters
 
-__all__ = ["IntrinsicMesh", "TriangleMesh", "as_mesh", "as_triangle_mesh", "is_mesh_like", "merged"]
+__all__ = ["IntrinsicMesh", "TriangleMesh", "as_mesh", "as_triangle_mesh", "is_mesh_like"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -225,30 +226,8 @@ class TriangleMesh(PolyhedralSurface):
 
         finite = np.flatnonzero(self.vertex_is_finite)
         pairs = finite[KDTree(self.vertices[finite]).query_pairs(rtol * self.diagonal, output_type="ndarray")]
-        vertices, vertex_map = _merged(self.n_vertices, pairs)
-        return TriangleMesh(self.vertices[vertices], vertex_map[self.faces]), vertex_map
-
-
-def merged(mesh: IntrinsicMesh | TriangleMesh, pairs: Indices) -> tuple[IntrinsicMesh | TriangleMesh, Indices]:
-    """The mesh with the vertices of each pair (k, 2) as one, at the place of the first, and the new index of each."""
-    vertices, vertex_map = _merged(mesh.n_vertices, pairs)
-    if isinstance(mesh, IntrinsicMesh):
-        return IntrinsicMesh(vertex_map[mesh.faces], mesh.edge_lengths, len(vertices)), vertex_map
-    return TriangleMesh(mesh.vertices[vertices], vertex_map[mesh.faces]), vertex_map
-
-
-def _merged(n: int, pairs: Indices) -> tuple[Indices, Indices]:
-    """The first of n vertices in each cluster, in their order, and the number of the cluster of each."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    links = coo_array((np.ones(len(pairs), np.bool_), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    labels = connected_components(links, directed=False)[1]
-    _, first, clusters = np.unique(labels, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    return first[order], rank[clusters].astype(np.intp)
+        first, vertex_map = clusters(self.n_vertices, pairs)
+        return TriangleMesh(self.vertices[first], vertex_map[self.faces]), vertex_map
 
 
 def _as_mapping(vertex_data: Any) -> Mapping[str, ArrayLike]:
@@ -282,8 +261,7 @@ def is_mesh_like(value: Any) -> bool:
 def as_mesh(mesh: Any) -> TriangleMesh | IntrinsicMesh:
     """The mesh meant by a mesh, a ``(V, F)`` pair, or an object with vertices and faces.
 
-    Objects are taken by their attributes: ``.vertices`` and ``.faces`` (trimesh), or ``.points`` and
-    ``.regular_faces`` (a triangulated pyvista ``PolyData``).
+    Objects have ``.vertices`` and ``.faces`` (trimesh), or ``.points`` and ``.regular_faces`` (pyvista, triangulated).
 
     Raises
     ------

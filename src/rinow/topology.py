@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rinow._arrays import read_only
 from rinow.kernels import adjacency
 
-__all__ = ["Topology"]
+__all__ = ["Topology", "clusters"]
 
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
@@ -196,3 +196,15 @@ class Topology:
     def neighbours(self) -> Indices:
         """Vertices joined by an edge, each once, row after row."""
         return self._neighbour_rows[1]
+
+
+def clusters(n: int, pairs: Indices) -> tuple[Indices, Indices]:
+    """Clusters of n vertices joined by pairs (k, 2): the first vertex of each, and for each vertex its cluster."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    links = coo_array((np.ones(len(pairs), np.bool_), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    labels = connected_components(links, directed=False)[1]
+    _, first, cluster = np.unique(labels, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    return first[order], np.argsort(order)[cluster].astype(np.intp)

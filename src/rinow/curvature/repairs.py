@@ -11,7 +11,8 @@ from rinow.curvature.estimate import Estimate
 from rinow.curvature.notes import merge_notes, repeat_notes, sheet_notes, weld_notes
 from rinow.kernels import cuts
 from rinow.kernels.adjacency import BOUNDARY, NONMANIFOLD
-from rinow.mesh import IntrinsicMesh, TriangleMesh, merged
+from rinow.mesh import IntrinsicMesh, TriangleMesh
+from rinow.topology import clusters
 
 __all__ = ["Sheets", "repaired", "sheets_of", "without_repeats"]
 
@@ -54,11 +55,19 @@ def repaired(mesh: Mesh) -> tuple[Mesh, Indices | None, tuple[str, ...]]:
     for pairs_of in (_edges_without_length, _seams):
         pairs = pairs_of(mesh)
         if len(pairs):
-            mesh, new = merged(mesh, pairs)
+            mesh, new = _merged(mesh, pairs)
             index = new if index is None else new[index]
     notes += merge_notes(before - mesh.n_vertices)
     mesh, n_repeated = without_repeats(mesh)
     return mesh, index, notes + repeat_notes(n_repeated)
+
+
+def _merged(mesh: Mesh, pairs: Indices) -> tuple[Mesh, Indices]:
+    """The mesh with the vertices of each pair (k, 2) as one, at the place of the first, and the new index of each."""
+    vertices, vertex_map = clusters(mesh.n_vertices, pairs)
+    if isinstance(mesh, IntrinsicMesh):
+        return IntrinsicMesh(vertex_map[mesh.faces], mesh.edge_lengths, len(vertices)), vertex_map
+    return TriangleMesh(mesh.vertices[vertices], vertex_map[mesh.faces]), vertex_map
 
 
 def _edges_without_length(mesh: Mesh) -> Indices:
