@@ -3,7 +3,7 @@
 import numba
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import shapes
@@ -84,6 +84,7 @@ def test_turned_faces_change_nothing(method, seed):
 
 @FEW
 @given(METHODS, SEEDS, st.integers(0, 200))
+@example("auto", 2, 152)  # once cut into sheets, all neighbours of a vertex lie on it
 def test_any_list_of_triangles_is_answered(method, seed, n_faces):
     rng = np.random.default_rng(seed)
     V = rng.integers(-2, 3, (25, 3)) * rng.choice([1.0, 1e-9, np.nan], (25, 1), p=[0.8, 0.15, 0.05])

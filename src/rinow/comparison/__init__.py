@@ -10,7 +10,7 @@ Exact comparison
 Bounds without a search
     `bounds`, `persistence`, `subsets`.
 Upper bounds
-    `warm_start` with `alignment` and `relaxation`.
+    `warm_start` with `alignment` and `relaxation`; `large_bijections` for the Lipschitz distance.
 Meshes and large spaces
     `surfaces` with `surface_points`; `large` with `large_work` and `large_subsets`.
 """

@@ -60,7 +60,7 @@ def robust_fit(terms, heights, weights, residuals):
 def offsets(points, normals, near, reach, n_blocks, out, middles, largest):
     """Write distances of the first points from quadrics through their neighbours, the median and largest one of these.
 
-    Row v of `near` has the neighbours of points[v].
+    Row v of `near` has the neighbours of points[v]; all are 0 where these are at one place or no normal is known.
     """
     for block in prange(n_blocks):
         n, k = near.shape
@@ -68,7 +68,7 @@ def offsets(points, normals, near, reach, n_blocks, out, middles, largest):
         for v in range(n * block // n_blocks, n * (block + 1) // n_blocks):
             out[v], middles[v], largest[v] = 0.0, 0.0, 0.0
             normal = (normals[v, 0], normals[v, 1], normals[v, 2])
-            if normal != (0.0, 0.0, 0.0):
+            if normal != (0.0, 0.0, 0.0) and reach[v] > 0.0:
                 local_terms(v, near[v], points, normal, reach[v], terms, heights)
                 height, middle = robust_fit(terms, heights, weights, residuals)
                 out[v], middles[v] = abs(height) * reach[v], middle * reach[v]
