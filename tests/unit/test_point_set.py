@@ -7,6 +7,7 @@ import pytest
 
 import rinow
 from naive import point_set as naive
+from rinow.embedding.point_set import closest_curvatures
 
 EPS = 2.0**-53
 
@@ -51,7 +52,26 @@ def test_agrees_with_the_minimum_of_the_naive_misfit():
         np.fill_diagonal(D, 0)
         expected = naive.curvature(D.tolist(), -2.0, 3.0)
         # A minimum is found to the square root of the rounding of the misfit.
-        assert rinow.fit_curvature(D).value == pytest.approx(expected, abs=1e-6)
+        assert closest_curvatures(D[None])[0] == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize("k", [1.0, 0.0, -1.0])
+def test_two_standard_errors_hold_the_curvature_of_noisy_points(k):
+    # The least misfit of 30 points is off by one standard error with noise of 1 %, and by three with 3 %.
+    for noise in (0.01, 0.03):
+        rng, D = np.random.default_rng(70), [distances(k, 30, 1.0, seed) for seed in range(20)]
+        D = np.array([disturbed(d, noise, rng) * (1 - np.eye(30)) for d in D])
+        fit, least = rinow.fit_curvature(D), closest_curvatures(D)
+        assert (np.abs(fit.value - k) < 2 * fit.standard_error).mean() >= 0.85
+        assert abs((fit.value - k).mean()) < 0.5 * (least - k).mean()
+
+
+def test_a_fit_that_more_noise_would_undo_has_no_standard_error():
+    D = disturbed(distances(1.0, 15, 1.0, seed=75), 0.1, np.random.default_rng(76)) * (1 - np.eye(15))
+    fit = rinow.fit_curvature(D)
+    assert math.isfinite(fit.value)
+    assert math.isnan(fit.standard_error)
+    assert fit.value == closest_curvatures(D[None])[0]
 
 
 def test_the_standard_error_is_that_of_repeated_measurements():

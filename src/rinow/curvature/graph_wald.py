@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.graph_rows import N_BLOCKS, Arcs
-from rinow.embedding.point_set import fit_curvature
+from rinow.embedding.point_set import closest_curvatures
 from rinow.embedding.quadruple import embedding_curvatures
 from rinow.kernels import landmarks
 
@@ -75,7 +75,7 @@ def _of_spaces(D: Floats) -> tuple[Floats, Floats]:
     distances = D[:, quadruples[:, PAIRS[0]], quadruples[:, PAIRS[1]]]
     found = embedding_curvatures(distances)
     # A fit to points of a tree has no minimum; then the root nearer to 0 is taken.
-    centre = np.nan_to_num(fit_curvature(D).value)[:, None, None]
+    centre = np.nan_to_num(closest_curvatures(D))[:, None, None]
     away = np.where(np.isnan(found.values), np.inf, np.abs(found.values - centre))
     nearest = np.take_along_axis(found.values, away.argmin(axis=-1)[..., None], axis=-1)[..., 0]
     nearest[_is_tree(distances, found.count)] = -np.inf
