@@ -32,7 +32,7 @@ SMALLEST = -1e4
 BEYOND = 1.5
 """Steps may exceed by this factor the largest curvature that the perimeter of a triple allows."""
 N_COPIES, SMALL_NOISE = 8, 1e-7
-"""Pairs of disturbed copies by which the bias of noise is seen, and the noise, in diameters, below which it has none."""
+"""Pairs of disturbed copies that show the bias of noise, and the noise, in diameters, below which it has none."""
 UNSURE = 0.25
 """Share of the bias that stays uncertain: what is taken off is the first term of a series in the variance."""
 
@@ -199,7 +199,7 @@ def _fit(distances: Floats) -> tuple[float, float, float]:
 
 
 def closest_curvatures(distances: Floats) -> Floats:
-    """(m,): the curvatures in which m sets of points come closest, as in `fit_curvature`, whatever noise adds to them."""
+    """(m,): the curvatures in which m sets of points come closest, with whatever noise adds to them."""
     values = np.full(len(distances), math.nan)
     for i, matrix in enumerate(distances):
         D, diameter = _from_the_middle(matrix)
