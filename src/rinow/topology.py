@@ -80,9 +80,8 @@ class Topology:
         first = self._halfedge_edges[1]
         return read_only(np.flatnonzero(first == np.arange(len(first))))
 
-    @cached_property
     def edge_of_halfedge(self) -> Indices:
-        """(3 n_faces,): number of the edge of each half-edge; -1 for faces that take no part."""
+        """(3 n_faces,): number of the edge of each half-edge; -1 for faces that take no part.  It is not kept."""
         first, numbers = self._halfedge_edges[1], np.empty(3 * len(self.faces), np.intp)
         numbers[self.edge_halfedges] = np.arange(self.n_edges)
         return read_only(np.where(first >= 0, numbers[first], -1))

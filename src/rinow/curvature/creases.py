@@ -68,10 +68,10 @@ class EdgeTurnings:
             mesh.vertices, mesh.faces, mesh.outward_flips, self.normals, t.partners, self.halfedges, self.turnings
         )
 
-    @property
+    @cached_property
     def edge_of_halfedge(self) -> Indices:
         """(3 n_faces,): number of the edge of each half-edge; -1 for faces that take no part."""
-        return self.mesh.topology.edge_of_halfedge
+        return self.mesh.topology.edge_of_halfedge()
 
     @cached_property
     def gains(self) -> Floats:

@@ -106,8 +106,6 @@ def _seams(mesh: Mesh) -> Indices:
 
 def _places(vertices: Floats, ends: Indices, lengths: Floats) -> Indices:
     """(n_vertices,): the same number for vertices of edges at the same place."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
 
     n, rows = len(vertices), np.unique(ends)
@@ -115,9 +113,7 @@ def _places(vertices: Floats, ends: Indices, lengths: Floats) -> Indices:
     np.minimum.at(least, ends.ravel(), np.repeat(lengths, 2))
     pairs = rows[KDTree(vertices[rows]).query_pairs(POINT * float(np.median(lengths)), output_type="ndarray")]
     gaps = np.linalg.norm(vertices[pairs[:, 0]] - vertices[pairs[:, 1]], axis=1)
-    pairs = pairs[gaps <= POINT * least[pairs].min(axis=1)]
-    links = coo_array((np.ones(len(pairs), np.bool_), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    return connected_components(links, directed=False)[1].astype(np.intp)
+    return clusters(n, pairs[gaps <= POINT * least[pairs].min(axis=1)])[1]
 
 
 def without_repeats(mesh: Mesh) -> tuple[Mesh, int]:
@@ -139,12 +135,13 @@ class Sheets(NamedTuple):
     """A mesh whose vertices have one fan of faces each, and the vertex that each of them is a copy of."""
 
     mesh: Mesh
-    origin: Indices
+    origin: Indices | None
+    """None if each is itself."""
     notes: tuple[str, ...]
 
     def largest(self, estimate: Estimate, is_special: Bools, n: int) -> tuple[Estimate, Bools]:
         """The values, and a mark, of the sheet with the largest area at each of n vertices, if it has a value."""
-        if len(self.origin) == n:
+        if self.origin is None:
             return estimate, is_special
         order = np.lexsort((-self.mesh.vertex_areas, ~np.isfinite(estimate.gaussian), self.origin))
         rows = order[np.searchsorted(self.origin[order], np.arange(n))]
@@ -157,7 +154,7 @@ def sheets_of(mesh: Mesh) -> Sheets:
     A fin, a face that stands on such an edge and is joined to nothing else, is left out.
     """
     if not _meet(mesh).any():
-        return Sheets(mesh, np.arange(mesh.n_vertices), ())
+        return Sheets(mesh, None, ())
     fins = _fins(mesh)
     if fins.any():
         mesh = _with_faces(mesh, np.flatnonzero(~fins))
@@ -184,7 +181,7 @@ def _fins(mesh: Mesh) -> Bools:
     t = mesh.topology
     partners = t.partners.reshape(-1, 3)
     alone = ((partners == NONMANIFOLD).sum(axis=1) == 1) & ((partners == BOUNDARY).sum(axis=1) == 2)
-    stands = np.where(partners == NONMANIFOLD, t.edge_of_halfedge.reshape(-1, 3), -1)
+    stands = np.where(partners == NONMANIFOLD, t.edge_of_halfedge().reshape(-1, 3), -1)
     counts = np.bincount(stands[~alone & t.face_used].ravel() + 1, minlength=t.n_edges + 1)
     counts[0] = 0
     return alone & (counts[stands.max(axis=1) + 1] > 0)

@@ -247,8 +247,8 @@ def _least(
     The tables, the largest arrays of all, are overwritten by their averages where two passes are made.
     """
     place = (spacing, power, rows, low, high, links)
-    variance = _averaged(tables.variance, *place, 1)
     bias, bias_variance, step = (_averaged(x, *place, passes) for x in (tables.bias, tables.bias_variance, tables.step))
+    variance = _averaged(tables.variance, *place, 1)  # last, since a single pass takes new memory
     averages = (variance, bias, bias_variance, step)
     choice = _empty_choice(len(spacing))
     risks.least_risks(rows, low, high, ladder.reaches, tables, *averages, *choice, logs)
