@@ -14,7 +14,7 @@ from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 from rinow.kernels.patch_fits import BOTH, GAUSSIAN, MEAN
 
-__all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "levelled", "sample", "scales", "select", "windows"]
+__all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "least", "sample", "scales", "select", "windows"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -34,10 +34,19 @@ NEAR, AROUND = 1.5, 2.2
 DENSE = 6.0
 """Vertices in a disc over its squared radius in spacings: 3.6 in a mesh of equilateral triangles, rarely above 5."""
 
+SKIP = 1
+BIAS_B = 0.0
 LADDER = np.array([1.6, 2.0, 2.5, 3.1, 3.8, 4.7, 5.8, 7.2, 9.0, 11.2, 14.0, 17.0])
 """Radii of balls, in spacings."""
 RUNG = np.log(LADDER[-1] / LADDER[0]) / (len(LADDER) - 1)
 """Logarithm of the step from one to the next."""
+
+
+Charts = NDArray[np.int8] | np.int8
+OSCULATING, MEAN_TORUS, MEAN_PLANE = np.int8(0), np.int8(1), np.int8(2)
+WIDER = np.array([0, 3, 3])
+MEAN_ORDER = 2
+RESIDUALS, ABOVE = 4.0, 2
 
 
 class Ladder(NamedTuple):
@@ -66,12 +75,17 @@ class Ladder(NamedTuple):
         own = patch_driver.Centres(centres, frames, low, high, self.factors[centres], orders, rows, noise, curvedness)
         return Fitting(task, errors_of, self.reaches, self.most, sheet, own)
 
-    def frames(self, sheet: balls.Sheet, centres: Ints, frames: Floats, choice: Choice, tasks: Tasks) -> Floats:
-        """Frames of the tori that osculate the fits of a choice of radius and order."""
+    def frames(
+        self, sheet: balls.Sheet, centres: Ints, frames: Floats, choice: Choice, tasks: Tasks, chart: Charts = OSCULATING
+    ) -> Floats:
+        """Frames of charts, for a choice of radius and order in them."""
         rows, noise = np.zeros(len(centres) + 1, np.int64), np.zeros(len(centres))
-        radius = np.maximum(choice.radius, 0)
-        fitting = self.fitting(patch_driver.FRAMES, sheet, centres, frames, radius, radius, choice.order, rows, noise)
-        return fit_frames(fitting, tasks, 0.1)
+        radius = np.clip(choice.radius + WIDER[chart], 0, len(self.reaches) - 1).astype(np.int32)
+        order = np.where(chart == OSCULATING, choice.order, np.minimum(choice.order, MEAN_ORDER)).astype(np.int32)
+        fitting = self.fitting(patch_driver.FRAMES, sheet, centres, frames, radius, radius, order, rows, noise)
+        found = fit_frames(fitting, tasks, 0.1)
+        found[np.broadcast_to(chart == MEAN_PLANE, len(found)), 9:] = 0.0
+        return found
 
 
 class Choice(NamedTuple):
@@ -97,6 +111,7 @@ class Samples(NamedTuple):
     members: Ints
     plane_logs: Floats
     torus_logs: Floats
+    mean_logs: Floats
     level_logs: Floats
     choice: Choice
     noise: Floats
@@ -121,21 +136,31 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     last = np.full(m, len(ladder.reaches) - 1, np.int32)
     pilot = np.minimum(last, PILOT_RADII - 1)
     flat = flat_frames(sheet, centres)
-    plane_logs, choice, _ = _examine(sheet, ladder, centres, flat, flat, pilot, MEAN, links, tasks)
+    plane_logs, choice, _, _ = _examine(sheet, ladder, centres, flat, flat, pilot, MEAN, links, tasks)
     frames = ladder.frames(sheet, centres, flat, choice, tasks)
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, choice, tasks)
-    torus_logs, choice, noise = _examine(sheet, ladder, centres, frames, frames, last, GAUSSIAN, links, tasks)
-    level = frames.copy()
-    level[:, 9:] = 0.0
-    level_logs, over_plane, _ = _examine(sheet, ladder, centres, level, BENT * frames, last, BOTH, links, tasks)
-    choice = levelled(frames, choice, over_plane)
+    torus = _examine(sheet, ladder, centres, frames, frames, last, GAUSSIAN, links, tasks)
+    choice, noise = torus[1:3]
+    logs = [torus[0]]
+    risks_of = [choice.risk]
+    choices = [choice]
+    for chart in (MEAN_TORUS, MEAN_PLANE)[SKIP:]:
+        own = ladder.frames(sheet, centres, flat if chart == MEAN_PLANE else frames, choice, tasks, chart)
+        errors, bent = (BOTH, BENT * frames) if chart == MEAN_PLANE else (GAUSSIAN, own)
+        other = _examine(sheet, ladder, centres, own, bent, last, errors, links, tasks)
+        score = (BIAS_B if chart == MEAN_TORUS else 0.0) + RESIDUALS * _log_residuals(other, torus, ladder, links)
+        logs.append(other[0] + score[:, None, None])
+        choices.append(other[1]._replace(risk=other[1].risk * np.exp(score)))
+    while len(logs) < 3:
+        logs.insert(1, np.full_like(logs[0], np.nan)); choices.insert(1, choices[0]._replace(risk=np.full(m, np.inf)))
+    chart, choice = least(choices)
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
     member_starts, members = members_of_discs(sheet, everything, centres, NEAR * radius, room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
-    logs = plane_logs, torus_logs, level_logs
+    logs = plane_logs, *logs
     return Samples(order, starts, near, member_starts, members, *logs, choice, noise, sheet.spacing[centres])
 
 
@@ -176,7 +201,8 @@ def _examine(
     logs = np.full((m, n_radii, N_ORDERS), np.nan)
     power = 2 if errors_of == MEAN else 4
     choice = _least(ladder, spacing, power, known, rows, low, high, links, 1, logs)
-    return logs - power * np.log(spacing)[:, None, None], choice, noise * spacing**2
+    residuals = tables.noise.reshape(m, n_radii, N_ORDERS).copy()
+    return logs - power * np.log(spacing)[:, None, None], choice, noise * spacing**2, residuals
 
 
 def windows(samples: Samples, scales: Scales) -> tuple[Ints, Ints, Ints, Floats]:
@@ -214,14 +240,25 @@ def chosen_at(vertices: Ints, samples: Samples, scales: Scales, logs: Floats) ->
     return choice
 
 
-def levelled(frames: Floats, choice: Choice, over_plane: Choice) -> Choice:
-    """The choices over tori or over planes, whichever risk less; frames of the latter lose their curvatures.
+def _log_residuals(other, torus, ladder, links):
+    at = np.arange(len(other[1].radius))
+    total, number = np.zeros(len(at)), np.zeros(len(at))
+    for choice in (torus[1], other[1]):
+        k, d = np.clip(choice.radius + ABOVE, 0, len(ladder.reaches) - 1), np.clip(choice.order - 2, 0, 6)
+        x = np.log(other[3][at, k, d] / torus[3][at, k, d])
+        ok = np.isfinite(x) & (choice.radius >= 0)
+        total[ok] += x[ok]
+        number[ok] += 1
+    score = np.where(number > 0, total / np.maximum(number, 1), 0.0)
+    sums = np.r_[0, np.cumsum(score[links[1]])]
+    return (sums[links[0][1:]] - sums[links[0][:-1]]) / np.maximum(np.diff(links[0]), 1)
 
-    A surface that does not keep its curvatures over a ball, as waves do not, leaves its torus further than its plane.
-    """
-    is_level = LEVEL * over_plane.risk < choice.risk
-    frames[is_level, 9:] = 0.0
-    return Choice(*(np.where(is_level, a, b) for a, b in zip(over_plane, choice, strict=True)))
+
+def least(choices):
+    risk = np.array([c.risk for c in choices])
+    risk[np.isnan(risk)] = np.inf
+    chart = np.argmin(risk, axis=0).astype(np.int8)
+    return chart, Choice(*(np.choose(chart, [c[k] for c in choices]) for k in range(3)))
 
 
 def select(

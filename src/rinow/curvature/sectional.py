@@ -15,7 +15,7 @@ from rinow.curvature.ends import repair_ends
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
-from rinow.curvature.scale import Choice, Ladder, Samples, chosen_at, levelled, sample, scales, select, windows
+from rinow.curvature.scale import Choice, Ladder, Samples, MEAN_PLANE, OSCULATING, chosen_at, least, sample, scales, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
@@ -182,18 +182,23 @@ def blended_patches(
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, samples.turns, core)
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
-    logs = samples.plane_logs, samples.torus_logs, samples.level_logs
-    plane, choice, over_plane = (chosen_at(centres, samples, between, x) for x in logs)
-    over_plane.risk[beside] = np.inf
+    logs = samples.plane_logs, samples.torus_logs, samples.mean_logs, samples.level_logs
+    plane, *choices = (chosen_at(centres, samples, between, x) for x in logs)
+    for c in choices[1:]:
+        c.risk[beside] = np.inf
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
-    choice = levelled(frames, _safe(choice, beside, ladder), over_plane)
+    chart, choice = least([_safe(choices[0], beside, ladder), *choices[1:]])
+    chart[beside] = OSCULATING
+    frames[chart == MEAN_PLANE, 9:] = 0.0
+    if not quality.selects:
+        frames = ladder.frames(sheet, centres, frames, choice, tasks, chart)
     high = high[centres] + np.where(beside, EDGE_RADII, 0)
     window = *_widened(low[centres], high, top[centres], len(ladder.reaches)), at_centres
-    del between, low, top, logs, plane, over_plane  # the searches need the memory
+    del between, low, top, logs, plane, choices  # the searches need the memory
     for search, is_own in ((INSIDE, ~beside & quality.selects), (BESIDE, beside)):
         if is_own.any():
             own = slice(None) if is_own.all() else np.flatnonzero(is_own)  # a view of all centres costs no memory
-            _look(search, own, sheet, ladder, centres, core, window, frames, choice, tasks)
+            _look(search, own, sheet, ladder, centres, core, window, frames, choice, chart, tasks)
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
@@ -228,7 +233,7 @@ def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
 
 def _look(
     search: Search, own: slice | NDArray[np.intp], sheet: balls.Sheet, ladder: Ladder, centres: Ints, core: Floats,
-    window: tuple[Ints, Ints, Ints, Floats], frames: Floats, choice: Choice, tasks: Tasks,
+    window: tuple[Ints, Ints, Ints, Floats], frames: Floats, choice: Choice, chart, tasks: Tasks,
 ) -> None:  # fmt: skip
     """Let some of the centres choose by themselves, in place."""
     few = centres[own]
@@ -237,8 +242,7 @@ def _look(
     tasks.part = len(few) / len(centres) / search.rounds
     for _ in range(search.rounds):
         last = Choice(choice.radius[own], choice.order[own], choice.risk[own])
-        own_frames = ladder.frames(sheet, few, frames[own], last, tasks)
-        own_frames[~frames[own, 9:].any(axis=1), 9:] = 0.0
+        own_frames = ladder.frames(sheet, few, frames[own], last, tasks, chart[own])
         frames[own] = own_frames
         del own_frames
         found = select(sheet, ladder, few, frames[own], (low, high, top, noise), links, PASSES, tasks)
