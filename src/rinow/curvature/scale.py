@@ -8,25 +8,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.centres import cover, flat_frames, members_of_discs, turns
+from rinow.curvature.charts import MEAN_ORDER, WIDER, Choice, log_ratios, lower
 from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 from rinow.kernels.patch_fits import BOTH, GAUSSIAN, MEAN
 
-__all__ = ["LADDER", "Choice", "Ladder", "Samples", "chosen_at", "least", "sample", "scales", "select", "windows"]
+__all__ = ["LADDER", "Ladder", "Samples", "chosen_at", "sample", "scales", "select", "windows"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Bools = NDArray[np.bool_]
 Scales = tuple[Floats, Floats, Floats]
 
 PILOT_RADII, PILOT_ORDER = 10, 6
 """Balls and orders of the fits over the tangent plane."""
 SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
 """Radius a sample covers, in spacings, for surfaces up to so many vertices: with and without refinement."""
-LEVEL, BENT = 2.0, 0.3
-"""Factor by which the risk over a plane must be less than that over the torus for the plane to be taken, and how much
-errors of H count there beside those of K: on folds K shall decide."""
+BENT = 0.3
+"""How much errors of H count over a plane beside those of K: on folds K shall decide."""
 ROUNDING = 1e-15
 """Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
@@ -34,19 +35,10 @@ NEAR, AROUND = 1.5, 2.2
 DENSE = 6.0
 """Vertices in a disc over its squared radius in spacings: 3.6 in a mesh of equilateral triangles, rarely above 5."""
 
-SKIP = 1
-BIAS_B = 0.0
 LADDER = np.array([1.6, 2.0, 2.5, 3.1, 3.8, 4.7, 5.8, 7.2, 9.0, 11.2, 14.0, 17.0])
 """Radii of balls, in spacings."""
 RUNG = np.log(LADDER[-1] / LADDER[0]) / (len(LADDER) - 1)
 """Logarithm of the step from one to the next."""
-
-
-Charts = NDArray[np.int8] | np.int8
-OSCULATING, MEAN_TORUS, MEAN_PLANE = np.int8(0), np.int8(1), np.int8(2)
-WIDER = np.array([0, 3, 3])
-MEAN_ORDER = 2
-RESIDUALS, ABOVE = 4.0, 2
 
 
 class Ladder(NamedTuple):
@@ -76,24 +68,16 @@ class Ladder(NamedTuple):
         return Fitting(task, errors_of, self.reaches, self.most, sheet, own)
 
     def frames(
-        self, sheet: balls.Sheet, centres: Ints, frames: Floats, choice: Choice, tasks: Tasks, chart: Charts = OSCULATING
+        self, sheet: balls.Sheet, centres: Ints, frames: Floats, choice: Choice, tasks: Tasks, is_level: Bools
     ) -> Floats:
-        """Frames of charts, for a choice of radius and order in them."""
+        """Frames of the tori that osculate the fits of a choice of radius and order, or of mean planes."""
         rows, noise = np.zeros(len(centres) + 1, np.int64), np.zeros(len(centres))
-        radius = np.clip(choice.radius + WIDER[chart], 0, len(self.reaches) - 1).astype(np.int32)
-        order = np.where(chart == OSCULATING, choice.order, np.minimum(choice.order, MEAN_ORDER)).astype(np.int32)
+        radius = np.clip(choice.radius + WIDER * is_level, 0, len(self.reaches) - 1).astype(np.int32)
+        order = np.where(is_level, MEAN_ORDER, choice.order).astype(np.int32)
         fitting = self.fitting(patch_driver.FRAMES, sheet, centres, frames, radius, radius, order, rows, noise)
         found = fit_frames(fitting, tasks, 0.1)
-        found[np.broadcast_to(chart == MEAN_PLANE, len(found)), 9:] = 0.0
+        found[is_level, 9:] = 0.0
         return found
-
-
-class Choice(NamedTuple):
-    """For each centre the index of the radius (-1 for none), the order and the expected squared error."""
-
-    radius: Ints
-    order: Ints
-    risk: Floats
 
 
 class Samples(NamedTuple):
@@ -101,7 +85,7 @@ class Samples(NamedTuple):
 
     The vertices in the order in which they become centres; for each vertex the samples near it (compressed rows); for
     each sample the vertices it speaks for (compressed rows), its logarithmic risks of H over the plane, of K over the
-    torus, and of both over its plane, for each radius and order, its choice, noise and spacing.
+    torus, and of both over the mean plane, for each radius and order, its choice, noise and spacing.
     """
 
     turns: Ints
@@ -111,11 +95,19 @@ class Samples(NamedTuple):
     members: Ints
     plane_logs: Floats
     torus_logs: Floats
-    mean_logs: Floats
     level_logs: Floats
     choice: Choice
     noise: Floats
     spacing: Floats
+
+
+class Examined(NamedTuple):
+    """Of samples: logarithmic risks (m, n_radii, 7), choices, noise, and mean square residuals (m, n_radii, 7)."""
+
+    logs: Floats
+    choice: Choice
+    noise: Floats
+    residuals: Floats
 
 
 def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, sizes: Ints | None = None) -> Samples:
@@ -134,34 +126,24 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     m, radius = len(centres), np.broadcast_to(reach, n)[centres]
     links = members_of_discs(sheet, centres, centres, AROUND * radius)
     last = np.full(m, len(ladder.reaches) - 1, np.int32)
-    pilot = np.minimum(last, PILOT_RADII - 1)
-    flat = flat_frames(sheet, centres)
-    plane_logs, choice, _, _ = _examine(sheet, ladder, centres, flat, flat, pilot, MEAN, links, tasks)
-    frames = ladder.frames(sheet, centres, flat, choice, tasks)
+    flat, few = flat_frames(sheet, centres), np.minimum(last, PILOT_RADII - 1)
+    pilot = _examine(sheet, ladder, centres, flat, flat, few, MEAN, links, tasks)
+    bent, level = np.zeros(m, np.bool_), np.ones(m, np.bool_)
+    frames = ladder.frames(sheet, centres, flat, pilot.choice, tasks, bent)
     if is_refined:
-        frames = ladder.frames(sheet, centres, frames, choice, tasks)
+        frames = ladder.frames(sheet, centres, frames, pilot.choice, tasks, bent)
     torus = _examine(sheet, ladder, centres, frames, frames, last, GAUSSIAN, links, tasks)
-    choice, noise = torus[1:3]
-    logs = [torus[0]]
-    risks_of = [choice.risk]
-    choices = [choice]
-    for chart in (MEAN_TORUS, MEAN_PLANE)[SKIP:]:
-        own = ladder.frames(sheet, centres, flat if chart == MEAN_PLANE else frames, choice, tasks, chart)
-        errors, bent = (BOTH, BENT * frames) if chart == MEAN_PLANE else (GAUSSIAN, own)
-        other = _examine(sheet, ladder, centres, own, bent, last, errors, links, tasks)
-        score = (BIAS_B if chart == MEAN_TORUS else 0.0) + RESIDUALS * _log_residuals(other, torus, ladder, links)
-        logs.append(other[0] + score[:, None, None])
-        choices.append(other[1]._replace(risk=other[1].risk * np.exp(score)))
-    while len(logs) < 3:
-        logs.insert(1, np.full_like(logs[0], np.nan)); choices.insert(1, choices[0]._replace(risk=np.full(m, np.inf)))
-    chart, choice = least(choices)
+    planes = ladder.frames(sheet, centres, flat, torus.choice, tasks, level)
+    plane = _examine(sheet, ladder, centres, planes, BENT * frames, last, BOTH, links, tasks)
+    more = log_ratios((torus.choice, plane.choice), torus.residuals, plane.residuals, links)
+    choice = lower(torus.choice, plane.choice._replace(risk=plane.choice.risk * np.exp(more)))[1]
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
     member_starts, members = members_of_discs(sheet, everything, centres, NEAR * radius, room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
-    logs = plane_logs, *logs
-    return Samples(order, starts, near, member_starts, members, *logs, choice, noise, sheet.spacing[centres])
+    logs = pilot.logs, torus.logs, plane.logs + more[:, None, None]
+    return Samples(order, starts, near, member_starts, members, *logs, choice, torus.noise, sheet.spacing[centres])
 
 
 def _examine(
@@ -174,10 +156,10 @@ def _examine(
     errors_of: int,
     links: tuple[Ints, Ints],
     tasks: Tasks,
-) -> tuple[Floats, Choice, Floats]:
-    """Logarithmic risks (m, n_radii, 7), choices and noise of samples, whose noise is not known beforehand.
+) -> Examined:
+    """Examine samples, whose noise is not known beforehand, up to the radii of index `high`.
 
-    Each is examined up to the radius of index `high`; `bent` are frames that tell the curvedness.
+    `bent` are frames that tell the curvedness.
     """
     m, n_radii, low = len(centres), len(ladder.reaches), np.zeros(len(centres), np.int32)
     order = np.full(m, PILOT_ORDER if errors_of == MEAN else MAX_ORDER, np.int32)
@@ -186,9 +168,10 @@ def _examine(
         patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, errors_of, bent
     )
     tables = fill_tables(fitting, False, tasks, 0.05)
-    residuals = np.empty((m, n_radii * N_ORDERS))
-    risks.median_rows(tables.noise.reshape(residuals.shape) * spacing[:, None] ** 2, links[1], links[0], residuals)
-    noise = np.fmin.reduce(residuals, axis=1, initial=np.inf) / spacing**2
+    residuals = tables.noise.reshape(m, n_radii, N_ORDERS)
+    medians = np.empty((m, n_radii * N_ORDERS))
+    risks.median_rows(tables.noise.reshape(medians.shape) * spacing[:, None] ** 2, links[1], links[0], medians)
+    noise = np.fmin.reduce(medians, axis=1, initial=np.inf) / spacing**2
     noise[noise == np.inf] = 0.0
     noise = np.maximum(noise, ROUNDING**2)
     s2 = np.repeat(noise, n_radii)[:, None]
@@ -201,8 +184,7 @@ def _examine(
     logs = np.full((m, n_radii, N_ORDERS), np.nan)
     power = 2 if errors_of == MEAN else 4
     choice = _least(ladder, spacing, power, known, rows, low, high, links, 1, logs)
-    residuals = tables.noise.reshape(m, n_radii, N_ORDERS).copy()
-    return logs - power * np.log(spacing)[:, None, None], choice, noise * spacing**2, residuals
+    return Examined(logs - power * np.log(spacing)[:, None, None], choice, noise * spacing**2, residuals)
 
 
 def windows(samples: Samples, scales: Scales) -> tuple[Ints, Ints, Ints, Floats]:
@@ -238,27 +220,6 @@ def chosen_at(vertices: Ints, samples: Samples, scales: Scales, logs: Floats) ->
     table = logs.reshape(len(logs), logs.shape[1] * logs.shape[2])
     covers.choices(vertices, samples.starts, samples.near, table, *scales, N_ORDERS, N_BLOCKS, *choice)
     return choice
-
-
-def _log_residuals(other, torus, ladder, links):
-    at = np.arange(len(other[1].radius))
-    total, number = np.zeros(len(at)), np.zeros(len(at))
-    for choice in (torus[1], other[1]):
-        k, d = np.clip(choice.radius + ABOVE, 0, len(ladder.reaches) - 1), np.clip(choice.order - 2, 0, 6)
-        x = np.log(other[3][at, k, d] / torus[3][at, k, d])
-        ok = np.isfinite(x) & (choice.radius >= 0)
-        total[ok] += x[ok]
-        number[ok] += 1
-    score = np.where(number > 0, total / np.maximum(number, 1), 0.0)
-    sums = np.r_[0, np.cumsum(score[links[1]])]
-    return (sums[links[0][1:]] - sums[links[0][:-1]]) / np.maximum(np.diff(links[0]), 1)
-
-
-def least(choices):
-    risk = np.array([c.risk for c in choices])
-    risk[np.isnan(risk)] = np.inf
-    chart = np.argmin(risk, axis=0).astype(np.int8)
-    return chart, Choice(*(np.choose(chart, [c[k] for c in choices]) for k in range(3)))
 
 
 def select(

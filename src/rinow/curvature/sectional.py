@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
 from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, sizes_of_discs
+from rinow.curvature.charts import Choice, lower
 from rinow.curvature.ends import repair_ends
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
-from rinow.curvature.scale import Choice, Ladder, Samples, MEAN_PLANE, OSCULATING, chosen_at, least, sample, scales, select, windows
+from rinow.curvature.scale import Ladder, Samples, chosen_at, sample, scales, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
@@ -182,23 +183,22 @@ def blended_patches(
     core = np.maximum(quality.least, quality.share * ladder.reaches[low] * ladder.factors)
     centres = cover(sheet, samples.turns, core)
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
-    logs = samples.plane_logs, samples.torus_logs, samples.mean_logs, samples.level_logs
-    plane, *choices = (chosen_at(centres, samples, between, x) for x in logs)
-    for c in choices[1:]:
-        c.risk[beside] = np.inf
-    frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), _safe(plane, beside, ladder), tasks)
-    chart, choice = least([_safe(choices[0], beside, ladder), *choices[1:]])
-    chart[beside] = OSCULATING
-    frames[chart == MEAN_PLANE, 9:] = 0.0
+    logs = samples.plane_logs, samples.torus_logs, samples.level_logs
+    pilot, torus, plane = (_safe(chosen_at(centres, samples, between, x), beside, ladder) for x in logs)
+    is_level, choice = lower(torus, plane)
+    frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), pilot, tasks, np.zeros_like(is_level))
+    frames[is_level, 9:] = 0.0
     if not quality.selects:
-        frames = ladder.frames(sheet, centres, frames, choice, tasks, chart)
+        rows = np.flatnonzero(is_level & ~beside)
+        of_rows = Choice(*(x[rows] for x in choice))
+        frames[rows] = ladder.frames(sheet, centres[rows], frames[rows], of_rows, tasks, np.ones(len(rows), np.bool_))
     high = high[centres] + np.where(beside, EDGE_RADII, 0)
     window = *_widened(low[centres], high, top[centres], len(ladder.reaches)), at_centres
-    del between, low, top, logs, plane, choices  # the searches need the memory
+    del between, low, top, logs, pilot, torus, plane  # the searches need the memory
     for search, is_own in ((INSIDE, ~beside & quality.selects), (BESIDE, beside)):
         if is_own.any():
             own = slice(None) if is_own.all() else np.flatnonzero(is_own)  # a view of all centres costs no memory
-            _look(search, own, sheet, ladder, centres, core, window, frames, choice, chart, tasks)
+            _look(search, own, sheet, ladder, centres, core, window, frames, choice, tasks)
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
@@ -233,7 +233,7 @@ def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
 
 def _look(
     search: Search, own: slice | NDArray[np.intp], sheet: balls.Sheet, ladder: Ladder, centres: Ints, core: Floats,
-    window: tuple[Ints, Ints, Ints, Floats], frames: Floats, choice: Choice, chart, tasks: Tasks,
+    window: tuple[Ints, Ints, Ints, Floats], frames: Floats, choice: Choice, tasks: Tasks,
 ) -> None:  # fmt: skip
     """Let some of the centres choose by themselves, in place."""
     few = centres[own]
@@ -242,9 +242,7 @@ def _look(
     tasks.part = len(few) / len(centres) / search.rounds
     for _ in range(search.rounds):
         last = Choice(choice.radius[own], choice.order[own], choice.risk[own])
-        own_frames = ladder.frames(sheet, few, frames[own], last, tasks, chart[own])
-        frames[own] = own_frames
-        del own_frames
+        frames[own] = ladder.frames(sheet, few, frames[own], last, tasks, ~frames[own, 9:].any(axis=1))
         found = select(sheet, ladder, few, frames[own], (low, high, top, noise), links, PASSES, tasks)
         choice.radius[own], choice.order[own], choice.risk[own] = found.radius, found.order, OF_GAUSSIAN * found.risk
         has_fit = found.radius >= 0
