@@ -15,7 +15,7 @@ from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
 from rinow.kernels.nested_fits import MAX_ORDER, N_ORDERS
 from rinow.kernels.patch_fits import BOTH, GAUSSIAN, MEAN
 
-__all__ = ["LADDER", "Ladder", "Samples", "chosen_at", "sample", "scales", "select", "windows"]
+__all__ = ["LADDER", "Ladder", "Samples", "chosen_at", "curvedness_of", "sample", "scales", "select", "windows"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -60,11 +60,11 @@ class Ladder(NamedTuple):
 
     def fitting(
         self, task: int, sheet: balls.Sheet, centres: Ints, frames: Floats, low: Ints, high: Ints, orders: Ints,
-        rows: NDArray[np.int64], noise: Floats, errors_of: int = BOTH, bent: Floats | None = None,
+        rows: NDArray[np.int64], noise: Floats, errors_of: int = BOTH, curvedness: Floats | None = None,
     ) -> Fitting:  # fmt: skip
-        """Fits about some vertices to the balls of the given indices; `bent` are frames that tell the curvedness."""
-        curvedness = np.sqrt(0.5) * np.linalg.norm((frames if bent is None else bent)[:, 9:], axis=1)
-        own = patch_driver.Centres(centres, frames, low, high, self.factors[centres], orders, rows, noise, curvedness)
+        """Fits about some vertices to the balls of the given indices; planes do not tell the curvedness."""
+        bend = curvedness_of(frames) if curvedness is None else curvedness
+        own = patch_driver.Centres(centres, frames, low, high, self.factors[centres], orders, rows, noise, bend)
         return Fitting(task, errors_of, self.reaches, self.most, sheet, own)
 
     def frames(
@@ -78,6 +78,11 @@ class Ladder(NamedTuple):
         found = fit_frames(fitting, tasks, 0.1)
         found[is_level, 9:] = 0.0
         return found
+
+
+def curvedness_of(frames: Floats) -> Floats:
+    """Curvedness of the tori of frames."""
+    return np.sqrt(0.5) * np.linalg.norm(frames[:, 9:], axis=1)
 
 
 class Samples(NamedTuple):
@@ -127,14 +132,14 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     links = members_of_discs(sheet, centres, centres, AROUND * radius)
     last = np.full(m, len(ladder.reaches) - 1, np.int32)
     flat, few = flat_frames(sheet, centres), np.minimum(last, PILOT_RADII - 1)
-    pilot = _examine(sheet, ladder, centres, flat, flat, few, MEAN, links, tasks)
+    pilot = _examine(sheet, ladder, centres, flat, 0.0 * sheet.spacing[centres], few, MEAN, links, tasks)
     bent, level = np.zeros(m, np.bool_), np.ones(m, np.bool_)
     frames = ladder.frames(sheet, centres, flat, pilot.choice, tasks, bent)
     if is_refined:
         frames = ladder.frames(sheet, centres, frames, pilot.choice, tasks, bent)
-    torus = _examine(sheet, ladder, centres, frames, frames, last, GAUSSIAN, links, tasks)
+    torus = _examine(sheet, ladder, centres, frames, curvedness_of(frames), last, GAUSSIAN, links, tasks)
     planes = ladder.frames(sheet, centres, flat, torus.choice, tasks, level)
-    plane = _examine(sheet, ladder, centres, planes, BENT * frames, last, BOTH, links, tasks)
+    plane = _examine(sheet, ladder, centres, planes, BENT * curvedness_of(frames), last, BOTH, links, tasks)
     more = log_ratios((torus.choice, plane.choice), torus.residuals, plane.residuals, links)
     choice = lower(torus.choice, plane.choice._replace(risk=plane.choice.risk * np.exp(more)))[1]
     everything = np.arange(n, dtype=np.int32)
@@ -151,21 +156,18 @@ def _examine(
     ladder: Ladder,
     centres: Ints,
     frames: Floats,
-    bent: Floats,
+    curvedness: Floats,
     high: Ints,
     errors_of: int,
     links: tuple[Ints, Ints],
     tasks: Tasks,
 ) -> Examined:
-    """Examine samples, whose noise is not known beforehand, up to the radii of index `high`.
-
-    `bent` are frames that tell the curvedness.
-    """
+    """Examine samples, whose noise is not known beforehand, up to the radii of index `high`."""
     m, n_radii, low = len(centres), len(ladder.reaches), np.zeros(len(centres), np.int32)
     order = np.full(m, PILOT_ORDER if errors_of == MEAN else MAX_ORDER, np.int32)
     rows, spacing = np.arange(m + 1) * n_radii, sheet.spacing[centres]
     fitting = ladder.fitting(
-        patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, errors_of, bent
+        patch_driver.TABLES, sheet, centres, frames, low, high, order, rows, spacing**2, errors_of, curvedness
     )
     tables = fill_tables(fitting, False, tasks, 0.05)
     residuals = tables.noise.reshape(m, n_radii, N_ORDERS)
@@ -223,15 +225,15 @@ def chosen_at(vertices: Ints, samples: Samples, scales: Scales, logs: Floats) ->
 
 
 def select(
-    sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, window: tuple[Ints, Ints, Ints, Floats],
-    links: tuple[Ints, Ints], passes: int, tasks: Tasks,
+    sheet: balls.Sheet, ladder: Ladder, centres: Ints, frames: Floats, curvedness: Floats,
+    window: tuple[Ints, Ints, Ints, Floats], links: tuple[Ints, Ints], passes: int, tasks: Tasks,
 ) -> Choice:  # fmt: skip
     """The least risk of K and H of each centre among the radii low..high and orders up to `top`, for known noise."""
     low, high, top, noise = window
     spacing = sheet.spacing[centres]
     rows = np.zeros(len(centres) + 1, np.int64)
     np.cumsum(high - low + 1, out=rows[1:])
-    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise)
+    fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise, BOTH, curvedness)
     place, no_logs = (rows, low, high, links, passes), np.empty((0, 0, 0))
     return _least(ladder, spacing, 4, fill_tables(fitting, True, tasks, 0.4), *place, no_logs)
 

@@ -16,7 +16,7 @@ from rinow.curvature.ends import repair_ends
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
-from rinow.curvature.scale import Ladder, Samples, chosen_at, sample, scales, select, windows
+from rinow.curvature.scale import Ladder, Samples, chosen_at, curvedness_of, sample, scales, select, windows
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
@@ -187,7 +187,7 @@ def blended_patches(
     pilot, torus, plane = (_safe(chosen_at(centres, samples, between, x), beside, ladder) for x in logs)
     is_level, choice = lower(torus, plane)
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), pilot, tasks, np.zeros_like(is_level))
-    frames[is_level, 9:] = 0.0
+    curvedness, frames[is_level, 9:] = curvedness_of(frames), 0.0
     if not quality.selects:
         rows = np.flatnonzero(is_level & ~beside)
         of_rows = Choice(*(x[rows] for x in choice))
@@ -198,7 +198,7 @@ def blended_patches(
     for search, is_own in ((INSIDE, ~beside & quality.selects), (BESIDE, beside)):
         if is_own.any():
             own = slice(None) if is_own.all() else np.flatnonzero(is_own)  # a view of all centres costs no memory
-            _look(search, own, sheet, ladder, centres, core, window, frames, choice, tasks)
+            _look(search, own, sheet, ladder, centres, core, window, frames, curvedness, choice, tasks)
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
@@ -233,7 +233,7 @@ def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
 
 def _look(
     search: Search, own: slice | NDArray[np.intp], sheet: balls.Sheet, ladder: Ladder, centres: Ints, core: Floats,
-    window: tuple[Ints, Ints, Ints, Floats], frames: Floats, choice: Choice, tasks: Tasks,
+    window: tuple[Ints, Ints, Ints, Floats], frames: Floats, curvedness: Floats, choice: Choice, tasks: Tasks,
 ) -> None:  # fmt: skip
     """Let some of the centres choose by themselves, in place."""
     few = centres[own]
@@ -242,8 +242,10 @@ def _look(
     tasks.part = len(few) / len(centres) / search.rounds
     for _ in range(search.rounds):
         last = Choice(choice.radius[own], choice.order[own], choice.risk[own])
-        frames[own] = ladder.frames(sheet, few, frames[own], last, tasks, ~frames[own, 9:].any(axis=1))
-        found = select(sheet, ladder, few, frames[own], (low, high, top, noise), links, PASSES, tasks)
+        is_level = ~frames[own, 9:].any(axis=1)
+        frames[own] = ladder.frames(sheet, few, frames[own], last, tasks, is_level)
+        bend = np.where(is_level, curvedness[own], curvedness_of(frames[own]))
+        found = select(sheet, ladder, few, frames[own], bend, (low, high, top, noise), links, PASSES, tasks)
         choice.radius[own], choice.order[own], choice.risk[own] = found.radius, found.order, OF_GAUSSIAN * found.risk
         has_fit = found.radius >= 0
         low = np.where(has_fit, np.maximum(low, found.radius - NARROW), low)
