@@ -29,9 +29,9 @@ class Choice(NamedTuple):
     risk: Floats
 
 
-def lower(torus: Choice, plane: Choice) -> tuple[Bools, Choice]:
-    """Whether the plane promises the lesser risk, and the choice in that chart; the torus if nothing is promised."""
-    is_level = plane.risk < np.where(np.isnan(torus.risk), np.inf, torus.risk)
+def lower(torus: Choice, plane: Choice, logs: Floats) -> tuple[Bools, Choice]:
+    """Whether the plane promises less, by risks and by `log_ratios`, and the choice in that chart."""
+    is_level = plane.risk * np.exp(logs) < torus.risk
     return is_level, Choice(*(np.where(is_level, a, b) for a, b in zip(plane, torus, strict=True)))
 
 

@@ -90,7 +90,8 @@ class Samples(NamedTuple):
 
     The vertices in the order in which they become centres; for each vertex the samples near it (compressed rows); for
     each sample the vertices it speaks for (compressed rows), its logarithmic risks of H over the plane, of K over the
-    torus, and of both over the mean plane, for each radius and order, its choice, noise and spacing.
+    torus, and of both over the mean plane, for each radius and order, `log_ratios` of plane and torus, its choice,
+    noise and spacing.
     """
 
     turns: Ints
@@ -101,6 +102,7 @@ class Samples(NamedTuple):
     plane_logs: Floats
     torus_logs: Floats
     level_logs: Floats
+    level_ratios: Floats
     choice: Choice
     noise: Floats
     spacing: Floats
@@ -141,13 +143,13 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     planes = ladder.frames(sheet, centres, flat, torus.choice, tasks, level)
     plane = _examine(sheet, ladder, centres, planes, BENT * curvedness_of(frames), last, BOTH, links, tasks)
     more = log_ratios((torus.choice, plane.choice), torus.residuals, plane.residuals, links)
-    choice = lower(torus.choice, plane.choice._replace(risk=plane.choice.risk * np.exp(more)))[1]
+    choice = lower(torus.choice, plane.choice, more)[1]
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
     member_starts, members = members_of_discs(sheet, everything, centres, NEAR * radius, room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
-    logs = pilot.logs, torus.logs, plane.logs + more[:, None, None]
+    logs = pilot.logs, torus.logs, plane.logs, more
     return Samples(order, starts, near, member_starts, members, *logs, choice, torus.noise, sheet.spacing[centres])
 
 

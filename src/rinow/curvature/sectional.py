@@ -185,7 +185,9 @@ def blended_patches(
     core, at_centres, beside = core[centres], noise[centres], at_edge[centres]
     logs = samples.plane_logs, samples.torus_logs, samples.level_logs
     pilot, torus, plane = (_safe(chosen_at(centres, samples, between, x), beside, ladder) for x in logs)
-    is_level, choice = lower(torus, plane)
+    ratios = np.empty(len(noise))
+    risks.vertex_means(samples.starts, samples.near, samples.level_ratios, ratios)
+    is_level, choice = lower(torus, plane, ratios[centres])
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), pilot, tasks, np.zeros_like(is_level))
     curvedness, frames[is_level, 9:] = curvedness_of(frames), 0.0
     if not quality.selects:
