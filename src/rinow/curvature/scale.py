@@ -142,14 +142,14 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     torus = _examine(sheet, ladder, centres, frames, curvedness_of(frames), last, GAUSSIAN, links, tasks)
     planes = ladder.frames(sheet, centres, flat, torus.choice, tasks, level)
     plane = _examine(sheet, ladder, centres, planes, BENT * curvedness_of(frames), last, BOTH, links, tasks)
-    more = log_ratios((torus.choice, plane.choice), torus.residuals, plane.residuals, links)
-    choice = lower(torus.choice, plane.choice, more)[1]
+    ratios = log_ratios((torus.choice, torus.residuals), (plane.choice, plane.residuals))
+    choice = lower(torus.choice, plane.choice, ratios)[1]
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
     member_starts, members = members_of_discs(sheet, everything, centres, NEAR * radius, room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
-    logs = pilot.logs, torus.logs, plane.logs, more
+    logs = pilot.logs, torus.logs, plane.logs, ratios
     return Samples(order, starts, near, member_starts, members, *logs, choice, torus.noise, sheet.spacing[centres])
 
 
