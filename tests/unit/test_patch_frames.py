@@ -5,7 +5,7 @@ import pytest
 
 import rinow
 import shapes
-from rinow.curvature import scale
+from rinow.curvature import scale, sectional
 
 SIDE = 45
 """Vertices along a side of the waves, over lengths of 6."""
@@ -21,24 +21,55 @@ def waves():
     return np.stack([x, y, 0.4 * s], axis=1), F, K, np.maximum(np.abs(x), np.abs(y)) < 2.2
 
 
+def hill(noise):
+    """Vertices, faces and curvature of z = exp(-4 r^2) / 2 with noise, and which vertices are away from the boundary."""
+    V, F = shapes.open_patch(4000)[:2]
+    x, y = 1.2 * V[:, 0], 1.2 * V[:, 1]
+    r2 = x * x + y * y
+    z = 0.5 * np.exp(-4.0 * r2)
+    K = 64.0 * z * z * (1.0 - 8.0 * r2) / (1.0 + 64.0 * z * z * r2) ** 2
+    z = z + np.random.default_rng(7).normal(size=len(V)) * noise * 2.4 / 63
+    return np.stack([x, y, z], axis=1), F, K, np.maximum(np.abs(x), np.abs(y)) < 0.9
+
+
+def error(shape, quality="best"):
+    """Root mean square error of K, relative to K."""
+    V, F, K, inside = shape
+    found = rinow.surface_curvature((V, F), quality=quality).gaussian
+    return np.linalg.norm((found - K)[inside]) / np.linalg.norm(K[inside])
+
+
+def only_tori(monkeypatch):
+    for module in (scale, sectional):
+        monkeypatch.setattr(module, "lower", lambda torus, plane, logs: (np.zeros(len(logs), np.bool_), torus))
+
+
 @pytest.mark.parametrize("quality", ("best", "fast"))
-@pytest.mark.parametrize(("noise", "gain"), ((0.0, 3.0), (0.01, 1.05)))
+@pytest.mark.parametrize(("noise", "gain"), ((0.0, 8.0), (0.01, 1.5)))
 def test_waves_are_nearer_to_planes(monkeypatch, noise, gain, quality):
-    # Without noise the gain is a factor of 4.  With it other samples gain 3 to 20 %: noise is most of the error there.
+    # Measured: 13 and 29 times without noise, 2.6 and 1.8 times with it.
     V, F, K, inside = waves()
     V[:, 2] += np.random.default_rng(5).normal(size=len(V)) * noise * 6.0 / (SIDE - 1)
+    ours = error((V, F, K, inside), quality)
+    only_tori(monkeypatch)
+    assert ours < error((V, F, K, inside), quality) / gain
 
-    def error():
-        found = rinow.surface_curvature((V, F), quality=quality).gaussian
-        return np.linalg.norm((found - K)[inside]) / np.linalg.norm(K[inside])
 
-    ours = error()
-    monkeypatch.setattr(scale, "LEVEL", np.inf)
-    assert ours < error() / gain
+@pytest.mark.parametrize("noise", (0.0, 0.01, 0.05))
+def test_hills_are_nearest_to_mean_planes(monkeypatch, noise):
+    # Measured: the error over tori is 110, 2.2 and 3.4 times as large, that over tangent planes 2.2 to 2.5 times.
+    shape = hill(noise)
+    ours = error(shape)
+    monkeypatch.setattr(scale, "WIDER", 0)
+    monkeypatch.setattr(scale, "MEAN_ORDER", 8)
+    tangent = error(shape)
+    only_tori(monkeypatch)
+    assert 2 * ours < error(shape)
+    assert 1.5 * ours < tangent
 
 
 def test_a_torus_is_fitted_over_tori(monkeypatch):
     V, F = shapes.irregular_torus(2000)[:2]
     ours = rinow.surface_curvature((V, F)).gaussian
-    monkeypatch.setattr(scale, "LEVEL", np.inf)
+    only_tori(monkeypatch)
     np.testing.assert_array_equal(ours, rinow.surface_curvature((V, F)).gaussian)
