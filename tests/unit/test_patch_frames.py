@@ -22,7 +22,7 @@ def waves():
 
 
 def hill(noise):
-    """Vertices, faces and curvature of z = exp(-4 r^2) / 2 with noise, and which vertices are away from the boundary."""
+    """Vertices, faces and curvature of z = exp(-4 r^2) / 2 with noise, and which vertices are off the boundary."""
     V, F = shapes.open_patch(4000)[:2]
     x, y = 1.2 * V[:, 0], 1.2 * V[:, 1]
     r2 = x * x + y * y
