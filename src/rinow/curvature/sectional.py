@@ -193,7 +193,7 @@ def blended_patches(
     curvedness, frames[is_level, 9:] = curvedness_of(frames), 0.0
     if not quality.selects:
         rows = np.flatnonzero(is_level & ~beside)
-        of_rows = Choice(*(x[rows] for x in choice))
+        of_rows = Choice(choice.radius[rows], choice.order[rows], choice.risk[rows])
         frames[rows] = ladder.frames(sheet, centres[rows], frames[rows], of_rows, tasks, np.ones(len(rows), np.bool_))
     high = high[centres] + np.where(beside, EDGE_RADII, 0)
     window = *_widened(low[centres], high, top[centres], len(ladder.reaches)), at_centres
@@ -245,7 +245,7 @@ def _look(
     tasks.part = len(few) / len(centres) / search.rounds
     for _ in range(search.rounds):
         last = Choice(choice.radius[own], choice.order[own], choice.risk[own])
-        is_level = ~frames[own, 9:].any(axis=1)
+        is_level: NDArray[np.bool_] = np.all(frames[own, 9:] == 0.0, axis=1)
         frames[own] = ladder.frames(sheet, few, frames[own], last, tasks, is_level)
         bend = np.where(is_level, curvedness[own], curvedness_of(frames[own]))
         found = select(sheet, ladder, few, frames[own], bend, (low, high, top, noise), links, PASSES, tasks)
