@@ -26,7 +26,7 @@ PILOT_RADII, PILOT_ORDER = 10, 6
 """Balls and orders of the fits over the tangent plane."""
 SAMPLE_SPACINGS = ((8192, 4.5, 4.5), (32768, 6.0, 6.0), (np.inf, 8.0, 10.0))
 """Radius a sample covers, in spacings, for surfaces up to so many vertices: with and without refinement."""
-BENT = 0.3
+BENT = 0.1
 """How much errors of H count over a plane beside those of K: on folds K shall decide."""
 ROUNDING = 1e-15
 """Least noise, in spacings."""
