@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.cloud_faces import agreed_triangles
+from rinow.curvature.cloud_hands import hands
 from rinow.curvature.cloud_holes import filled
 from rinow.curvature.cloud_signs import outward
 from rinow.curvature.cloud_stars import FEW, agreement, first_stars, links_of, normals_of, stars_over
@@ -22,7 +23,8 @@ Indices = NDArray[np.intp]
 
 SKEW = 0.1
 """Shear of the plane along the long axis of a star.  Rectangles of rows of points have two Delaunay triangulations;
-all are cut along the same one of their diagonals then, as in a structured mesh."""
+all are cut along the same one of their diagonals then, as in a structured mesh; which one the cloud decides, see
+`cloud_hands`."""
 BORDER_GAP = 2.8
 """Angle between neighbours, in radians, that tells a border: inside, Delaunay triangles have less."""
 
@@ -50,13 +52,14 @@ def cloud_sheet(points: Floats, distances: Floats, near: Indices) -> Cloud:
     normals, stars = first_stars(points, near)
     links = links_of(stars)
     normals = outward(points, normals, links)
+    skew = SKEW * hands(points, normals, near, links)
     for rounds in (1, 2) if near.shape[1] > FEW else (2,):
-        stars = stars_over(points, normals, near, stars, SKEW)
+        stars = stars_over(points, normals, near, stars, skew)
         links = links_of(stars)
         normals = normals_of(points, normals, stars, links, rounds)
     offsets, neighbours = links.indptr.astype(np.int32), links.indices.astype(np.int32)
-    sheet = balls.Sheet(points, normals, offsets, neighbours, _spacing(points, distances, offsets, neighbours), True)
     reach, at_border = distances[:, -1], stars.gaps > BORDER_GAP
+    sheet = balls.Sheet(points, normals, offsets, neighbours, _spacing(points, distances, offsets, neighbours), True)
     faces = filled(points, normals, agreed_triangles(points, stars, reach), reach, at_border)
     return Cloud(sheet, faces, at_border, agreement(stars))
 
