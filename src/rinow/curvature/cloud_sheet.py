@@ -59,19 +59,34 @@ def cloud_sheet(points: Floats, distances: Floats, near: Indices) -> Cloud:
         normals = normals_of(points, normals, stars, links, rounds)
     offsets, neighbours = links.indptr.astype(np.int32), links.indices.astype(np.int32)
     reach, at_border = distances[:, -1], stars.gaps > BORDER_GAP
-    sheet = balls.Sheet(points, normals, offsets, neighbours, _spacing(points, distances, offsets, neighbours), True)
+    even = _even_spacing(distances, near, at_border)
+    sheet = balls.Sheet(points, normals, offsets, neighbours, _spacing(points, even, offsets, neighbours), True)
     faces = filled(points, normals, agreed_triangles(points, stars, reach), reach, at_border)
     return Cloud(sheet, faces, at_border, agreement(stars))
 
 
-def _spacing(points: Floats, distances: Floats, offsets: NDArray[np.int32], neighbours: NDArray[np.int32]) -> Floats:
+def _even_spacing(distances: Floats, near: Indices, at_border: Bools) -> Floats:
+    """Edge of equilateral triangles of the same density, from the distance of the last of the nearest points.
+
+    A border cuts the disc of that radius, so that it is too large; where it is cut, that of the nearest points whose
+    disc is not cut is taken, if there are any.
+    """
+    even = np.sqrt(2.0 / np.sqrt(3.0) * np.pi / (distances.shape[1] + 0.5)) * distances[:, -1]
+    is_cut = at_border | at_border[near].any(axis=1)
+    whole = ~is_cut[near[is_cut]]
+    counts = np.count_nonzero(whole, axis=1)
+    means = np.sum(even[near[is_cut]] * whole, axis=1) / np.maximum(counts, 1)
+    even[is_cut] = np.where(counts > 0, means, even[is_cut])
+    return even
+
+
+def _spacing(points: Floats, even: Floats, offsets: NDArray[np.int32], neighbours: NDArray[np.int32]) -> Floats:
     """Mean distance of neighbours, between the edge of equilateral triangles of the same density and some of it.
 
     The same rule as for meshes: rows of points need the larger one, clusters must not get too small a one.
     """
     edges, sums = np.empty(len(points)), np.empty(len(points))
     stencils.mean_edge_lengths(points, offsets, neighbours, edges)
-    even = np.sqrt(2.0 / np.sqrt(3.0) * np.pi / (distances.shape[1] + 0.5)) * distances[:, -1]
     local = np.clip(edges, even, NEEDLES * even)
     stencils.ring_sums(local, offsets, neighbours, sums)
     return sums / (np.diff(offsets) + 1)
