@@ -17,5 +17,5 @@ Surfaces
     - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`, `flat`, `strays`.
 Points without a mesh
     `point_cloud`, over `cloud_facing` with `cloud_signs` and `cloud_stars`, `cloud_layers`, `cloud_sheet`,
-    `cloud_faces`, `cloud_holes`, `cloud_fit`; `clouds` as metric spaces.
+    `cloud_hands`, `cloud_faces`, `cloud_holes`, `cloud_fit`; `clouds` as metric spaces.
 """

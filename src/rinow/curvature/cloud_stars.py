@@ -29,14 +29,17 @@ class Stars(NamedTuple):
     gaps: Floats
 
 
-def stars_over(points: Floats, normals: Floats, near: Indices, before: Stars | None = None, skew: float = 0.0) -> Stars:
+def stars_over(
+    points: Floats, normals: Floats, near: Indices, before: Stars | None = None, skew: Floats | None = None
+) -> Stars:
     """Neighbours in the Delaunay triangulations of the nearest points, each laid over the plane across its normal.
 
-    The planes are sheared by `skew` along the long axes of the stars before.
+    The plane of point v is sheared by skew[v] along the long axis of its star before.
     """
     n = len(points)
     star, counts, gaps, axes = np.empty_like(near), np.zeros(n, np.intp), np.empty(n), np.empty_like(points)
     clouds.long_axes(points, normals, *((star, counts) if before is None else before[:2]), axes)
+    skew = np.zeros(n) if skew is None else skew
     clouds.stars(points, normals, axes, skew, near, N_BLOCKS, star, counts, gaps)
     return Stars(star, counts, gaps)
 

@@ -13,7 +13,7 @@ Curves and graphs
 Fits
     `balls` over `osculating_torus`, `nested_fits` by `eliminations`, `patch_fits`, `risks`, `patches` and `bends`, all
     driven by `patch_driver`; `covers` and `patch_order` place the patches; `monge`, `quadrics`, `ring_jets`; `clouds`,
-    `cloud_strays` and `cloud_layers` without a mesh.
+    `cloud_strays`, `cloud_layers` and `cloud_hands` without a mesh.
 Averages of angle defects
     `development`, `smoothing`, `stars`, `arcs`, `chord_forms`, `geodesic_stars`.
 Geodesics

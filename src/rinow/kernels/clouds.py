@@ -111,7 +111,7 @@ def star_of(v, near, points, normal, t, skew, plane, work):
 
 
 @parallel_kernel
-def stars(points, normals, tangents, skew, near, n_blocks, out, counts, gaps):
+def stars(points, normals, tangents, skews, near, n_blocks, out, counts, gaps):
     """Write to out[v] the neighbours of v around its normal, how many, and the widest angle between two of them."""
     k = near.shape[1]
     for block in prange(n_blocks):
@@ -122,7 +122,7 @@ def stars(points, normals, tangents, skew, near, n_blocks, out, counts, gaps):
         for v in range(n_points * block // n_blocks, n_points * (block + 1) // n_blocks):
             normal = (normals[v, 0], normals[v, 1], normals[v, 2])
             t = (tangents[v, 0], tangents[v, 1], tangents[v, 2])
-            n = star_of(v, near[v], points, normal, t, skew, plane, work) if normal != (0.0, 0.0, 0.0) else 0
+            n = star_of(v, near[v], points, normal, t, skews[v], plane, work) if normal != (0.0, 0.0, 0.0) else 0
             counts[v], gaps[v], before, first = 0, 0.0, 0.0, 0.0
             for j in range(n):
                 i = work[2][j]
