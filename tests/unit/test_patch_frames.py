@@ -41,7 +41,7 @@ def error(shape, quality="best"):
 
 def only_tori(monkeypatch):
     for module in (scale, sectional):
-        monkeypatch.setattr(module, "lower", lambda torus, plane, logs: (np.zeros(len(logs), np.bool_), torus))
+        monkeypatch.setattr(module, "lower", lambda torus, plane, logs, turns: (np.zeros(len(logs), np.bool_), torus))
 
 
 @pytest.mark.parametrize("quality", ("best", "fast"))

@@ -273,13 +273,17 @@ def test_triangles_are_one_closed_surface(noise):
 
 @pytest.mark.parametrize("height", [3.0, 6.0])
 def test_many_strays_far_above_are_left_out(height):
-    torus, rng = shapes.irregular_torus(2500), np.random.default_rng(11)
+    # One draw has 125 strays, of which 0.86 to 1 are left out; 0.6 would be by their offsets alone.
+    torus, shares = shapes.irregular_torus(2500), []
     n, mesh = len(torus.vertices), rinow.TriangleMesh(torus.vertices, torus.faces)
-    lifted = rng.choice(n, n // 20, replace=False)
-    strays = torus.vertices[lifted] + height * mesh.mean_edge_length * mesh.vertex_normals[lifted]
-    cloud = rinow.point_cloud_curvature(np.concatenate([torus.vertices, strays]))
-    is_left_out = cloud.status == VertexStatus.UNRESOLVED
-    assert is_left_out[n:].mean() > 0.9 and is_left_out[:n].mean() < 0.01  # 0.6 by their offsets alone
+    for seed in (11, 12, 13):
+        lifted = np.random.default_rng(seed).choice(n, n // 20, replace=False)
+        strays = torus.vertices[lifted] + height * mesh.mean_edge_length * mesh.vertex_normals[lifted]
+        cloud = rinow.point_cloud_curvature(np.concatenate([torus.vertices, strays]))
+        is_left_out = cloud.status == VertexStatus.UNRESOLVED
+        shares.append(is_left_out[n:].mean())
+        assert is_left_out[:n].mean() < 0.01
+    assert np.mean(shares) > 0.9
 
 
 def test_sheets_five_spacings_apart_are_two():

@@ -22,6 +22,11 @@ there what a fit misses is larger against the noise, which is the same in both c
 largest radius compared, so that no damage farther away makes the choice."""
 
 
+STEEPEST = 2.2
+"""Angle from which on nothing over a plane is believed: a surface that turns away is no graph over it, and what is
+left of it has residuals and errors that look small."""
+
+
 class Choice(NamedTuple):
     """For each centre the index of the radius (-1 for none), the order and the expected squared error."""
 
@@ -30,9 +35,12 @@ class Choice(NamedTuple):
     risk: Floats
 
 
-def lower(torus: Choice, plane: Choice, logs: Floats) -> tuple[Bools, Choice]:
-    """Whether the plane promises less, by risks and by `log_ratios`, and the choice in that chart."""
-    is_level = plane.risk * np.exp(logs) < torus.risk
+def lower(torus: Choice, plane: Choice, logs: Floats, turns: Floats) -> tuple[Bools, Choice]:
+    """Whether the plane promises less, by risks and by `log_ratios`, and the choice in that chart.
+
+    `turns` are angles by which the normals of the tori turn from the centres to the ends of the balls over planes.
+    """
+    is_level = (plane.risk * np.exp(logs) < torus.risk) & (turns < STEEPEST)
     return is_level, Choice(*(np.where(is_level, a, b) for a, b in zip(plane, torus, strict=True)))
 
 

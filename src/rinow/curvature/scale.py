@@ -79,6 +79,10 @@ class Ladder(NamedTuple):
         found[is_level, 9:] = 0.0
         return found
 
+    def turns(self, sheet: balls.Sheet, centres: Ints, frames: Floats, choice: Choice) -> Floats:
+        """Angles by which tori turn, in the direction of their curvedness, over the radii of a choice."""
+        return curvedness_of(frames) * self.reaches[choice.radius] * self.factors[centres] * sheet.spacing[centres]
+
 
 def curvedness_of(frames: Floats) -> Floats:
     """Curvedness of the tori of frames."""
@@ -143,7 +147,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     planes = ladder.frames(sheet, centres, flat, torus.choice, tasks, level)
     plane = _examine(sheet, ladder, centres, planes, BENT * curvedness_of(frames), last, BOTH, links, tasks)
     ratios = log_ratios((torus.choice, torus.residuals), (plane.choice, plane.residuals))
-    choice = lower(torus.choice, plane.choice, ratios)[1]
+    choice = lower(torus.choice, plane.choice, ratios, ladder.turns(sheet, centres, frames, plane.choice))[1]
     everything = np.arange(n, dtype=np.int32)
     room = int(DENSE * (NEAR * radius.max(initial=0.0)) ** 2)
     member_starts, members = members_of_discs(sheet, everything, centres, NEAR * radius, room)

@@ -188,8 +188,8 @@ def blended_patches(
     pilot, torus, plane = (_safe(chosen_at(centres, samples, between, x), beside, ladder) for x in logs)
     ratios = np.empty(len(noise))
     risks.vertex_means(samples.starts, samples.near, samples.level_ratios, ratios)
-    is_level, choice = lower(torus, plane, ratios[centres])
-    frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), pilot, tasks, np.zeros_like(is_level))
+    frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), pilot, tasks, np.zeros_like(beside))
+    is_level, choice = lower(torus, plane, ratios[centres], ladder.turns(sheet, centres, frames, plane))
     curvedness, frames[is_level, 9:] = curvedness_of(frames), 0.0
     if not quality.selects:
         rows = np.flatnonzero(is_level & ~beside)
