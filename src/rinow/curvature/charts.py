@@ -22,8 +22,8 @@ there what a fit misses is larger against the noise, which is the same in both c
 largest radius compared, so that no damage farther away makes the choice."""
 
 
-STEEPEST = 2.2
-"""Angle from which on nothing over a plane is believed: a surface that turns away is no graph over it, and what is
+STEEPEST = 3.0
+"""Angle from which on nothing over a plane is believed: a surface that turns back is no graph over it, and what is
 left of it has residuals and errors that look small."""
 
 
