@@ -225,3 +225,20 @@ def test_points_of_a_hyperplane_are_cospherical_others_not():
     assert not rinow.is_cospherical(simplices(4, 3, 100, seed=12)[1]).any()
     assert rinow.is_cospherical(SQUARE)
     assert not rinow.is_cospherical(matrix([1, 1, 1, 2, 2, 2], 4))
+
+
+@pytest.mark.parametrize("edge", [1e-100, 1e-80, 1.0, 1e80, 1e100])
+def test_volume_is_a_number_where_its_square_is_none(edge):
+    D = edge * (1.0 - np.eye(4))
+    np.testing.assert_allclose(rinow.simplex_volume(D), edge**3 / (6.0 * 2.0**0.5), rtol=1e-12)
+
+
+@pytest.mark.parametrize("exponent", [-400, -3, 3, 400])
+def test_which_triangles_are_flat_does_not_depend_on_the_unit(exponent):
+    excess = np.array([-1e-6, -1e-12, -1e-15, 0.0, 1e-15, 1e-12])
+    D = np.zeros((len(excess), 3, 3))
+    D[:, 0, 1], D[:, 1, 2], D[:, 0, 2] = 1.0, 1e-3, 1.001 - excess
+    D += np.swapaxes(D, 1, 2)
+    expected, actual = rinow.simplex_volume(D), rinow.simplex_volume(np.ldexp(D, exponent))
+    np.testing.assert_array_equal(np.ldexp(actual, -2 * exponent), expected)
+    assert np.isnan(expected[0]) and expected[-1] > 0.0

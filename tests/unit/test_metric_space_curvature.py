@@ -200,3 +200,14 @@ def nx_mesh():
 
     shape = shapes.tetrahedron()
     return TriangleMesh(shape.vertices, shape.faces)
+
+
+@pytest.mark.parametrize("exponent", [-498, -330, 330, 498])
+def test_value_follows_the_unit_of_length_to_the_ends_of_the_range(exponent):
+    """Multiplying by a power of two is exact, so the curvature is that of the unit, times a power of two."""
+    D = sampled(4.0, 14, 7, radius=0.3).distances
+    expected = metric_space_curvature(D)
+    actual = metric_space_curvature(np.ldexp(D, exponent))
+    np.testing.assert_array_equal(actual.status, expected.status)
+    np.testing.assert_allclose(np.ldexp(actual.value, 2 * exponent), expected.value, rtol=1e-9)
+    np.testing.assert_allclose(np.ldexp(actual.radius, -exponent), expected.radius, rtol=1e-9)

@@ -223,3 +223,18 @@ def test_same_bits_on_one_and_two_threads():
 def test_faults_are_named(arguments, message):
     with pytest.raises(rinow.InvalidInputError, match=message):
         wald_curvature(np.ones((4, 4)) - np.eye(4), **{"point": 0, **arguments})
+
+
+@pytest.mark.parametrize("exponent", [-498, -330, 330, 498])
+def test_value_follows_the_unit_of_length_to_the_ends_of_the_range(exponent):
+    """Multiplying by a power of two is exact, so the curvature is that of the unit, times a power of two."""
+    D = sampled(4.0, 14, 7, radius=0.3)
+    expected = wald_curvature(D, 0, radius=0.6)
+    actual = wald_curvature(np.ldexp(D, exponent), 0, radius=np.ldexp(0.6, exponent))
+    assert np.isclose(np.ldexp(actual.value, 2 * exponent), expected.value, rtol=1e-9)
+    assert actual.exists and expected.exists
+
+
+def test_radius_that_is_no_number_is_refused():
+    with pytest.raises(rinow.errors.InvalidInputError, match="radius"):
+        wald_curvature(np.eye(5, 3), 0, radius="a")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow._arrays import as_floats
+from rinow._arrays import as_floats, in_safe_unit, in_unit
 from rinow._printing import OneLine
 from rinow.curvature.space_fit import N_ORDERS, fit_at_first
 from rinow.curvature.status import VertexStatus
@@ -149,12 +149,18 @@ def metric_space_curvature(space: Any, *, radius: float | None = None) -> Metric
     extent = float(D[np.isfinite(D)].max())
     if extent and not 1.0 / LARGEST_DIAMETER < extent < LARGEST_DIAMETER:
         raise InvalidInputError(f"distances reach {extent:.3g}, and their curvature is no number; scale them.")
+    D, exponent = in_safe_unit(D)
+    reach = None if reach is None else float(in_unit(reach, -exponent))
     first = (D == 0.0).argmax(axis=1)  # the first of several points at distance 0
     distinct, place = np.unique(first, return_inverse=True)
     found = _of_distinct(D[np.ix_(distinct, distinct)], reach)
     at = place.ravel()
     return MetricSpaceCurvature(
-        found.value[at], found.standard_error[at], found.status[at], found.radius[at], found.residual[at]
+        in_unit(found.value[at], -2 * exponent),
+        in_unit(found.standard_error[at], -2 * exponent),
+        found.status[at],
+        in_unit(found.radius[at], exponent),
+        in_unit(found.residual[at], exponent),
     )
 
 

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._arrays import as_number, in_safe_unit, in_unit
 from rinow._printing import OneLine
 from rinow.curvature.regions import region
 from rinow.curvature.wald_limit import limit_at_first
@@ -38,7 +39,8 @@ class WaldCurvature(OneLine):
     Attributes
     ----------
     value : float
-        Limit of the embedding curvatures, in 1/length²; nan without a quadruple that has one.
+        Limit of the embedding curvatures, in 1/length²; nan without a quadruple that has one.  `n_quadruples`
+        is 0 where the ball holds too few points or, for modified curvature, no point between two others.
     standard_error : float
         Standard error of `value` from the scatter of the quadruples and the errors of the distances.
     n_quadruples : int
@@ -152,22 +154,25 @@ def wald_curvature(
     """
     if kind not in ("wald", "modified"):
         raise InvalidInputError(f'kind = {kind!r} is unknown; choose "wald" or "modified".')
+    radius = as_number(radius, "radius")
     ball = region(space, point, radius, size=max_points, rtol=rtol)
-    Q = (_all_quadruples if kind == "wald" else _side_quadruples)(ball.distances, ball.rtol)
+    D, exponent = in_safe_unit(ball.distances)
+    Q = (_all_quadruples if kind == "wald" else _side_quadruples)(D, ball.rtol)
     if len(Q) > MAX_QUADRUPLES:
         rng = np.random.default_rng(0) if rng is None else rng
         Q = Q[np.sort(rng.choice(len(Q), MAX_QUADRUPLES, replace=False))]
-    sixes = _six_distances(ball.distances, Q)
+    sixes = _six_distances(D, Q)
     found = embedding_curvatures(sixes)
     n_quadruples, n_without = int((found.count >= 0).sum()), int((found.count == 0).sum())
     some = found.count > 0
     if not some.any():
         return WaldCurvature(np.nan, np.nan, n_quadruples, n_without, False, radius)
     found = EmbeddingCurvatures(found.values[some], found.count[some], found.kind[some], found.condition[some])
-    limit = limit_at_first(ball.distances, Q[some], found, _errors(sixes[some], found, ball.rtol))
+    limit = limit_at_first(D, Q[some], found, _errors(sixes[some], found, ball.rtol))
     exists = n_quadruples >= FEWEST and n_without <= WITHOUT_VALUE * n_quadruples
-    exists &= limit.scatter * radius**2 < SCATTER and limit.contrast < CONTRAST
-    return WaldCurvature(limit.value, limit.standard_error, n_quadruples, n_without, bool(exists), radius)
+    exists &= limit.scatter * float(in_unit(radius, -exponent)) ** 2 < SCATTER and limit.contrast < CONTRAST
+    value, error = (float(in_unit(x, -2 * exponent)) for x in (limit.value, limit.standard_error))
+    return WaldCurvature(value, error, n_quadruples, n_without, bool(exists), radius)
 
 
 def _all_quadruples(D: Floats, rtol: float) -> Indices:

@@ -102,12 +102,18 @@ def simplex_volume(distances: ArrayLike) -> Floats:
     6.0
     """
     shape, D = _as_simplices(distances)
+    largest = np.max(np.abs(D), axis=(1, 2), initial=0.0, where=np.isfinite(D))
+    exponents = np.frexp(largest)[1]  # powers of two, so that products of lengths are numbers where the volume is one
+    D = np.ldexp(D, -exponents[:, None, None])
     length, H, _ = _perpendicular_parts(D)
     if D.shape[1] == 1:
         return (1.0 + length).reshape(shape)[()]
     squared = np.maximum(np.linalg.det(H), 0.0)
     volume = length * np.sqrt(squared) / math.factorial(D.shape[1] - 1)
-    return np.where(_least_height(H) >= -_flatness(D, length), volume, np.nan).reshape(shape)[()]
+    is_simplex = _least_height(H) >= -_flatness(D, length)
+    with np.errstate(over="ignore"):
+        volume = np.ldexp(volume, (D.shape[1] - 1) * exponents)
+    return np.where(is_simplex, volume, np.nan).reshape(shape)[()]
 
 
 def circumradius(distances: ArrayLike) -> Floats:
