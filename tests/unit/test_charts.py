@@ -20,6 +20,11 @@ def test_the_lesser_risk_wins_times_what_residuals_say():
     np.testing.assert_array_equal(choice.risk, (0.5, 1.0, 2.0, np.nan, 1.0))
 
 
+def test_exact_tori_overflow_nothing():
+    torus, plane = choices(1e-60, 0.0, 1e-60), choices(1e-3, 1e-3, np.inf)
+    assert not lower(torus, plane, np.array([2000.0, 2000.0, -2000.0]), np.zeros(3))[0].any()
+
+
 def test_no_plane_where_the_surface_turns_away():
     turns = np.array([0.99, 1.01]) * STEEPEST
     np.testing.assert_array_equal(lower(choices(1.0, 1.0), choices(0.1, 0.1), np.zeros(2), turns)[0], (True, False))

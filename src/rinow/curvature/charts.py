@@ -20,11 +20,9 @@ EXPONENT, ABOVE, FARTHEST = 4.0, 2, 9
 """Power of the ratio of residuals that counts between charts, and how many radii above that chosen they are compared:
 there what a fit misses is larger against the noise, which is the same in both charts.  The last is the index of the
 largest radius compared, so that no damage farther away makes the choice."""
-
-
 STEEPEST = 3.0
-"""Angle from which on nothing over a plane is believed: a surface that turns back is no graph over it, and what is
-left of it has residuals and errors that look small."""
+"""Angle, in radians, from which on nothing over a plane is believed: a surface that turns back is no graph over it, and
+what is left of it has residuals and errors that look small."""
 
 
 class Choice(NamedTuple):
@@ -40,7 +38,8 @@ def lower(torus: Choice, plane: Choice, logs: Floats, turns: Floats) -> tuple[Bo
 
     `turns` are angles by which the normals of the tori turn from the centres to the ends of the balls over planes.
     """
-    is_level = (plane.risk * np.exp(logs) < torus.risk) & (turns < STEEPEST)
+    with np.errstate(divide="ignore"):
+        is_level = (np.log(plane.risk) + logs < np.log(torus.risk)) & (turns < STEEPEST)
     return is_level, Choice(*(np.where(is_level, a, b) for a, b in zip(plane, torus, strict=True)))
 
 
