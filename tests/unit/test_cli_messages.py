@@ -1,5 +1,6 @@
 """The command line where something is wrong or somebody leaves: one line that says what to do, nothing half done."""
 
+import json
 import subprocess
 import sys
 
@@ -32,6 +33,8 @@ def folder(tmp_path, monkeypatch):
         ),
         ("info ball.ply more.ply", "more.ply is more than rinow info takes. rinow info --help lists the arguments."),
         ("curvature ball.ply --radius wide", 'Invalid value for --radius: unable to convert "wide" into float.'),
+        ("curvature -", "- names no file, and rinow reads and writes files only, no pipes;"),
+        ("curvature ball.ply -o -", "- names no file"),
         ("nonsense", 'Unknown command "nonsense". Available commands: demo, info, curvature,'),
     ],
 )
@@ -83,6 +86,37 @@ def test_ctrl_c_while_a_file_is_written_leaves_none_and_says_nothing(folder, cap
     assert main(["curvature", "ball.ply", "-o", "out.ply"]) == 130
     assert capsys.readouterr().err == ""
     assert sorted(path.name for path in folder.iterdir()) == before
+
+
+def test_a_signal_to_end_leaves_no_file_half_written(folder):
+    code = (
+        "import os, signal, sys, rinow.cli.main\n"
+        "os.replace = lambda *_: os.kill(os.getpid(), signal.SIGTERM)\n"
+        "sys.argv[1:] = ['curvature', 'ball.ply', '-o', 'out.ply']\n"
+        "rinow.cli.main.run()"
+    )
+    before = sorted(path.name for path in folder.iterdir())
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (143, b"", b"")
+    assert sorted(path.name for path in folder.iterdir()) == before
+
+
+@pytest.mark.parametrize("length", ["1e-170", "1e-155", "1e155", "1e170"])
+def test_a_unit_in_which_curvatures_are_no_numbers_is_refused(capsys, length):
+    for words in ([length] * 6, [length, "0", length, length, "0", length]):
+        assert main(["quadruple", *words]) == 1
+        out = capsys.readouterr()
+        assert out.out == ""
+        assert out.err.startswith("rinow: distances up to 1e")
+        assert out.err.endswith("give them in a unit in which they are near 1.\n")
+
+
+@pytest.mark.parametrize("length", ["1e-150", "1e150"])
+def test_far_units_give_finite_coordinates(capsys, length):
+    assert main(["quadruple", *[length] * 6, "--json"]) == 0
+    values = json.loads(capsys.readouterr().out)["values"]
+    assert len(values) == 1
+    assert np.isfinite(np.array(values[0]["coordinates"], float)).all()
 
 
 def test_help_says_nothing_of_flags_that_are_off(capsys):

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
@@ -16,7 +18,7 @@ __all__ = ["app", "main", "run"]
 
 OBJECTS_BETWEEN_COLLECTIONS = 100_000
 """Searching its many objects for cycles is a sixth of the time that compiling takes."""
-OK, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
+OK, BAD_INPUT, USAGE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 
 app = App(
     name="rinow",
@@ -42,12 +44,16 @@ for name, summary in SUMMARIES.items():
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code: 0 done, 1 bad input, 2 usage (either in one line on stderr)."""
+    """Run the command line and return its exit code.
+
+    It is 0 when done, 1 for bad input and 2 for wrong usage, either in one line on stderr; 130 after Ctrl-C, which
+    says nothing.
+    """
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         app(words, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        return _fail(_usage(error), USAGE)
+        return _fail(_usage(error, words), USAGE)
     except RinowError as error:
         return _fail(str(error))
     except MemoryError:
@@ -56,17 +62,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader has gone, and that is its right
     except KeyboardInterrupt:
         return INTERRUPTED
-    except SystemExit as stop:  # --help and --version
+    except SystemExit as stop:  # --help, --version and a signal to end
         return stop.code if isinstance(stop.code, int) else OK
     return OK
 
 
-def _usage(error: CycloptsError) -> str:
+def _usage(error: CycloptsError, words: Sequence[str]) -> str:
     """What is wrong with the arguments, and where to read what they are."""
     command = " ".join(("rinow", *(error.command_chain or ())))
     fault = str(error)
     if isinstance(error, UnusedCliTokensError):
         fault = f"{' '.join(error.unused_tokens or ())} is more than {command} takes."
+    if "-" in words:
+        fault = "- names no file, and rinow reads and writes files only, no pipes; give the name of one."
     return f"{fault} {command} --help lists the arguments."
 
 
@@ -76,7 +84,13 @@ def _fail(sentence: str, code: int = BAD_INPUT) -> int:
     return code
 
 
+def _terminated(number: int, frame: object) -> NoReturn:
+    """Unwind, so that no half-written file is left."""
+    raise SystemExit(TERMINATED)
+
+
 def run() -> None:
     """Entry point of the installed command."""
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
+    signal.signal(signal.SIGTERM, _terminated)
     sys.exit(main())
