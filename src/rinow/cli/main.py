@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import io
 import os
 import signal
 import sys
@@ -52,6 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         app(words, exit_on_error=False, print_error=False, result_action="return_value")
+        sys.stdout.flush()
     except CycloptsError as error:
         return _fail(_usage(error, words), USAGE)
     except RinowError as error:
@@ -59,7 +61,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MemoryError:
         return _fail("the machine has too little memory for this input; simplify the mesh or use a larger machine.")
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader has gone, and that is its right
+        _drop_output()  # the reader has gone, and that is its right
+    except OSError as error:  # of meshes and tables, readers and writers tell
+        if error.filename is not None:
+            return _fail(f"{error.filename}: {error.strerror or error}; check the file and its folder.")
+        _drop_output()
+        return _fail(f"the output cannot be written: {error.strerror or error}; make room or send it elsewhere.")
     except KeyboardInterrupt:
         return INTERRUPTED
     except SystemExit as stop:  # --help, --version and a signal to end
@@ -84,6 +91,11 @@ def _fail(sentence: str, code: int = BAD_INPUT) -> int:
     return code
 
 
+def _drop_output() -> None:
+    """Send what stdout still holds nowhere, which would fail again at the exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def _terminated(number: int, frame: object) -> NoReturn:
     """Unwind, so that no half-written file is left."""
     raise SystemExit(TERMINATED)
@@ -93,4 +105,10 @@ def run() -> None:
     """Entry point of the installed command."""
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
     signal.signal(signal.SIGTERM, _terminated)
+    if sys.stdout is None:  # closed by the caller
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # a locale without ² or a letter of a name still gets the rest
     sys.exit(main())
