@@ -126,7 +126,7 @@ def change_row(old, new, offsets, heads, lengths, marks):
 
 @kernel
 def menger_of(a, b, c):
-    """Menger curvature of a triangle; 0 if a side is as long as the others, up to rounding, or longer; nan if one is 0."""
+    """Menger curvature of a triangle; 0 if the others, up to rounding, are no longer than a side; nan if one is 0."""
     product = a * b * c
     if not product > 0.0:
         return np.nan
