@@ -242,3 +242,31 @@ def test_which_triangles_are_flat_does_not_depend_on_the_unit(exponent):
     expected, actual = rinow.simplex_volume(D), rinow.simplex_volume(np.ldexp(D, exponent))
     np.testing.assert_array_equal(np.ldexp(actual, -2 * exponent), expected)
     assert np.isnan(expected[0]) and expected[-1] > 0.0
+
+
+@pytest.mark.parametrize("exponent", [-1000, -400, 400, 1000])
+def test_what_a_simplex_is_does_not_depend_on_the_unit(exponent):
+    rng = np.random.default_rng(3)
+    for n in (2, 3, 4, 5):
+        points = rng.normal(size=(4, n, n - 1))
+        D = np.linalg.norm(points[:, :, None] - points[:, None], axis=3)
+        scaled = np.ldexp(D, exponent)
+        np.testing.assert_array_equal(np.ldexp(rinow.circumradius(D), exponent), rinow.circumradius(scaled))
+        assert rinow.is_euclidean_simplex(scaled).all()
+        if n >= 3:
+            flat = np.ldexp(rinow.MetricSpace.from_points(points[0, :, : n - 2]).distances, exponent)
+            assert not rinow.is_euclidean_simplex(flat)
+            assert np.isinf(rinow.circumradius(flat))
+            sphere = points[0, :, : n - 2] / np.linalg.norm(points[0, :, : n - 2], axis=1, keepdims=True)
+            round_set = np.linalg.norm(sphere[:, None] - sphere, axis=2)
+            assert rinow.is_cospherical(np.ldexp(round_set, exponent))
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 5])
+def test_a_determinant_out_of_range_keeps_its_sign(n):
+    D = 1.0 - np.eye(n)
+    assert rinow.cayley_menger_determinant(1e200 * D) == (-1.0) ** n * np.inf
+    assert rinow.cayley_menger_determinant(1e-200 * D) == 0.0
+    assert rinow.cayley_menger_determinant(np.ldexp(D, 50)) == np.ldexp(
+        rinow.cayley_menger_determinant(D), 100 * n - 100
+    )

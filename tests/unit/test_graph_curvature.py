@@ -258,3 +258,23 @@ def test_an_edge_of_infinite_length_is_none(kind):
 def test_bad_input(graph, options, message):
     with pytest.raises(InvalidInputError, match=message):
         rinow.graph_curvature(graph, **options)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 3.0, 7e5])
+def test_a_detour_as_long_as_the_edge_up_to_rounding_has_no_curvature(unit):
+    graph = nx.Graph()
+    # 0.1 + 0.2 is 0.30000000000000004, and (0.1 + 0.2) + 0.3 is not 0.1 + (0.2 + 0.3).
+    graph.add_weighted_edges_from([(0, 1, 0.1 * unit), (1, 2, 0.2 * unit), (0, 2, 0.3 * unit)])
+    graph.add_weighted_edges_from([(2, 3, 0.3 * unit), (0, 3, 0.6 * unit), (1, 3, 0.5 * unit)])
+    assert (rinow.graph_curvature(graph, kind="menger").edges == 0.0).all()
+    haantjes = rinow.graph_curvature(graph, kind="haantjes")
+    # Of the five paths from 0 to 3 only 0, 2, 1, 3 of length 1.0 is longer than 0.6.
+    ends = haantjes.edge_index.tolist().index([0, 3])
+    assert haantjes.edges[ends] * unit == pytest.approx(math.sqrt((1.0 - 0.6) / 0.6**3), rel=1e-12)
+
+
+def test_a_thin_triangle_keeps_its_curvature():
+    graph = nx.Graph()
+    height = 1e-5
+    graph.add_weighted_edges_from([(0, 1, math.hypot(1, height)), (1, 2, math.hypot(1, height)), (0, 2, 2.0)])
+    assert rinow.graph_curvature(graph, kind="menger").edges == pytest.approx(np.full(3, 2e-5), rel=1e-5)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import gc
+import io
 import os
+import signal
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
@@ -16,7 +19,7 @@ __all__ = ["app", "main", "run"]
 
 OBJECTS_BETWEEN_COLLECTIONS = 100_000
 """Searching its many objects for cycles is a sixth of the time that compiling takes."""
-OK, BAD_INPUT, USAGE, INTERRUPTED = 0, 1, 2, 130
+OK, BAD_INPUT, USAGE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 
 app = App(
     name="rinow",
@@ -42,31 +45,43 @@ for name, summary in SUMMARIES.items():
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code: 0 done, 1 bad input, 2 usage (either in one line on stderr)."""
+    """Run the command line and return its exit code.
+
+    It is 0 when done, 1 for bad input and 2 for wrong usage, either in one line on stderr; 130 after Ctrl-C, which
+    says nothing.
+    """
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         app(words, exit_on_error=False, print_error=False, result_action="return_value")
+        sys.stdout.flush()
     except CycloptsError as error:
-        return _fail(_usage(error), USAGE)
+        return _fail(_usage(error, words), USAGE)
     except RinowError as error:
         return _fail(str(error))
     except MemoryError:
         return _fail("the machine has too little memory for this input; simplify the mesh or use a larger machine.")
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader has gone, and that is its right
+        _drop_output()  # the reader has gone, and that is its right
+    except OSError as error:  # of meshes and tables, readers and writers tell
+        if error.filename is not None:
+            return _fail(f"{error.filename}: {error.strerror or error}; check the file and its folder.")
+        _drop_output()
+        return _fail(f"the output cannot be written: {error.strerror or error}; make room or send it elsewhere.")
     except KeyboardInterrupt:
         return INTERRUPTED
-    except SystemExit as stop:  # --help and --version
+    except SystemExit as stop:  # --help, --version and a signal to end
         return stop.code if isinstance(stop.code, int) else OK
     return OK
 
 
-def _usage(error: CycloptsError) -> str:
+def _usage(error: CycloptsError, words: Sequence[str]) -> str:
     """What is wrong with the arguments, and where to read what they are."""
     command = " ".join(("rinow", *(error.command_chain or ())))
     fault = str(error)
     if isinstance(error, UnusedCliTokensError):
         fault = f"{' '.join(error.unused_tokens or ())} is more than {command} takes."
+    if "-" in words:
+        fault = "- names no file, and rinow reads and writes files only, no pipes; give the name of one."
     return f"{fault} {command} --help lists the arguments."
 
 
@@ -76,7 +91,24 @@ def _fail(sentence: str, code: int = BAD_INPUT) -> int:
     return code
 
 
+def _drop_output() -> None:
+    """Send what stdout still holds nowhere, which would fail again at the exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _terminated(number: int, frame: object) -> NoReturn:
+    """Unwind, so that no half-written file is left."""
+    raise SystemExit(TERMINATED)
+
+
 def run() -> None:
     """Entry point of the installed command."""
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
+    signal.signal(signal.SIGTERM, _terminated)
+    if sys.stdout is None:  # closed by the caller
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # a locale without ² or a letter of a name still gets the rest
     sys.exit(main())

@@ -13,10 +13,11 @@ from rinow.embedding.cayley_menger import circumradius, is_euclidean_simplex, si
 from rinow.embedding.quadruple import EmbeddingCurvatures, embedding_curvatures
 from rinow.embedding.semidependent import robinson_curvature, semidependent_order
 from rinow.embedding.spaceform import SpaceForm
-from rinow.errors import NotAMetricError
+from rinow.errors import InvalidInputError, NotAMetricError
 
 __all__ = ["quadruple"]
 
+LEAST, GREATEST = 1e-150, 1e150
 NAMES = ("d12", "d13", "d14", "d23", "d24", "d34")
 PAIRS = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
 REASONS = {
@@ -51,6 +52,7 @@ def quadruple(d12: float, d13: float, d14: float, d23: float, d24: float, d34: f
     result = embedding_curvatures(d)
     if result.count == -2:
         raise NotAMetricError(_fault(d))
+    _check_range(d)
     record = _record(d, result)
     if json:
         print_json(record)
@@ -68,6 +70,16 @@ def _fault(d: np.ndarray) -> str:
     i, j, k = (int(x) for x in np.unravel_index(np.argmax(excess), excess.shape))
     names = [f"d{min(p, q) + 1}{max(p, q) + 1}" for p, q in ((i, k), (i, j), (j, k))]
     return f"{names[0]} = {D[i, k]:g} exceeds {names[1]} + {names[2]} = {D[i, j] + D[j, k]:g}; no metric has that."
+
+
+def _check_range(d: np.ndarray) -> None:
+    """Refuse distances whose squares, or the curvatures that go with them, are no numbers of full precision."""
+    largest = float(d.max())
+    if largest > 0.0 and not LEAST <= largest <= GREATEST:
+        raise InvalidInputError(
+            f"distances up to {largest:g} have curvatures out of the range of numbers; "
+            "give them in a unit in which they are near 1."
+        )
 
 
 def _matrix(d: np.ndarray) -> np.ndarray:

@@ -36,8 +36,9 @@ def cayley_menger_determinant(distances: ArrayLike) -> Floats:
     -------
     determinant : (...) ndarray of float
         In length^(2n - 2): :math:`(-1)^n 2^{n-1} ((n-1)!\,V)^2` for a simplex of volume V, so 2d² for two points,
-        -16 area² for three and 288 V² for four.  It is nan for a matrix with a negative, undefined or asymmetric
-        entry or a diagonal that is not 0.
+        -16 area² for three and 288 V² for four; inf of its sign or 0 where it leaves the range of numbers, as for
+        four points beyond lengths of 1e51 or below 1e-54.  It is nan for a matrix with a negative, undefined or
+        asymmetric entry or a diagonal that is not 0.
 
     Raises
     ------
@@ -66,15 +67,16 @@ def cayley_menger_determinant(distances: ArrayLike) -> Floats:
     >>> float(round(cayley_menger_determinant(1 - np.eye(4)), 12))
     4.0
     """
-    shape, D = _as_simplices(distances)
+    shape, D, exponents = _as_simplices(distances)
     n = D.shape[1]
     if n == 4:
         out = np.empty(len(D))
         determinants.cayley_menger_4s(D, out)
-        return out.reshape(shape)[()]
-    length, H, _ = _perpendicular_parts(D)
-    border = length**2 if n > 1 else 1.0 + length
-    return ((-1.0) ** n * 2.0 ** (n - 1) * border * np.linalg.det(H)).reshape(shape)[()]
+    else:
+        length, H, _ = _perpendicular_parts(D)
+        border = length**2 if n > 1 else 1.0 + length
+        out = (-1.0) ** n * 2.0 ** (n - 1) * border * np.linalg.det(H)
+    return _in_unit(out, 2 * (n - 1) * exponents).reshape(shape)[()]
 
 
 def simplex_volume(distances: ArrayLike) -> Floats:
@@ -101,18 +103,14 @@ def simplex_volume(distances: ArrayLike) -> Floats:
     >>> float(round(simplex_volume([[0, 3, 4], [3, 0, 5], [4, 5, 0]]), 12))
     6.0
     """
-    shape, D = _as_simplices(distances)
-    largest = np.max(np.abs(D), axis=(1, 2), initial=0.0, where=np.isfinite(D))
-    exponents = np.frexp(largest)[1]  # powers of two, so that products of lengths are numbers where the volume is one
-    D = np.ldexp(D, -exponents[:, None, None])
+    shape, D, exponents = _as_simplices(distances)
     length, H, _ = _perpendicular_parts(D)
     if D.shape[1] == 1:
         return (1.0 + length).reshape(shape)[()]
     squared = np.maximum(np.linalg.det(H), 0.0)
     volume = length * np.sqrt(squared) / math.factorial(D.shape[1] - 1)
     is_simplex = _least_height(H) >= -_flatness(D, length)
-    with np.errstate(over="ignore"):
-        volume = np.ldexp(volume, (D.shape[1] - 1) * exponents)
+    volume = _in_unit(volume, (D.shape[1] - 1) * exponents)
     return np.where(is_simplex, volume, np.nan).reshape(shape)[()]
 
 
@@ -146,12 +144,12 @@ def circumradius(distances: ArrayLike) -> Floats:
     >>> float(circumradius([[0, 3, 4], [3, 0, 5], [4, 5, 0]]))
     2.5
     """
-    shape, D = _as_simplices(distances)
+    shape, D, exponents = _as_simplices(distances)
     length, H, moments = _perpendicular_parts(D)
     least, flat = _least_height(H), _flatness(D, length)
     H[~(least > flat)] = np.eye(H.shape[1])
     centre = np.linalg.solve(H, moments[..., None])[..., 0]
-    radius = np.sqrt(length**2 / 4 + (moments * centre).sum(axis=1))
+    radius = _in_unit(np.sqrt(length**2 / 4 + (moments * centre).sum(axis=1)), exponents)
     return np.select([least > flat, least >= -flat], [radius, np.inf], np.nan).reshape(shape)[()]
 
 
@@ -188,7 +186,7 @@ def is_euclidean_simplex(distances: ArrayLike) -> Flags:
     >>> bool(is_euclidean_simplex([[0, 1, 1, 1], [1, 0, 2, 2], [1, 2, 0, 2], [1, 2, 2, 0]]))
     False
     """
-    shape, D = _as_simplices(distances)
+    shape, D, _ = _as_simplices(distances)
     length, H, _ = _perpendicular_parts(D)
     if D.shape[1] == 1:
         return np.isfinite(length).reshape(shape)[()]
@@ -232,7 +230,7 @@ def is_cospherical(distances: ArrayLike, rtol: float = 1e-9) -> Flags:
     >>> is_cospherical([square, centred])
     array([ True, False])
     """
-    shape, D = _as_simplices(distances)
+    shape, D, _ = _as_simplices(distances)
     if D.shape[1] < 3:
         raise InvalidInputError(f"distances has shape {shape + D.shape[1:]}; give at least 3 points.")
     length, _, _ = _perpendicular_parts(D)
@@ -246,12 +244,24 @@ def is_cospherical(distances: ArrayLike, rtol: float = 1e-9) -> Flags:
     return (flat & ((values[:, 1] <= rtol) | (power <= rtol))).reshape(shape)[()]
 
 
-def _as_simplices(distances: ArrayLike) -> tuple[tuple[int, ...], Floats]:
-    """Leading shape, and the matrices as one stack."""
+def _as_simplices(distances: ArrayLike) -> tuple[tuple[int, ...], Floats, NDArray[np.intc]]:
+    """Leading shape, the matrices as one stack, each over a power of two near its largest entry, and the exponents.
+
+    So scaled, products of lengths are numbers; no bit of a length changes, but for those lost in the scale of others.
+    """
     D = as_distances(distances)
     if D.ndim < 2 or D.shape[-1] != D.shape[-2] or D.shape[-1] == 0:
         raise InvalidInputError(f"distances has shape {D.shape}; give square matrices, shape (..., n, n) with n >= 1.")
-    return D.shape[:-2], D.reshape(-1, *D.shape[-2:])
+    shape, D = D.shape[:-2], D.reshape(-1, *D.shape[-2:])
+    largest = np.max(np.abs(D), axis=(1, 2), initial=0.0, where=np.isfinite(D))
+    exponents = np.frexp(largest)[1]
+    return shape, np.ldexp(D, -exponents[:, None, None]), exponents
+
+
+def _in_unit(values: Floats, exponents: NDArray[np.intc]) -> Floats:
+    """Values computed from scaled lengths, in the unit of the given ones."""
+    with np.errstate(over="ignore", under="ignore"):
+        return np.ldexp(values, exponents)
 
 
 def _perpendicular_parts(D: Floats) -> tuple[Floats, Floats, Floats]:

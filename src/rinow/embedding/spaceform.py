@@ -58,7 +58,7 @@ class SpaceForm:
     def __post_init__(self) -> None:
         k = as_floats(self.curvature, "curvature")
         if k.ndim or not math.isfinite(k):
-            raise InvalidInputError(f"curvature = {self.curvature!r} is not one finite number.")
+            raise InvalidInputError(f"curvature = {self.curvature!r} is not one finite number; give one, in 1/length².")
         object.__setattr__(self, "curvature", float(k))
 
     @property

@@ -10,10 +10,14 @@ import numpy as np
 
 from rinow.kernels import triangles
 from rinow.kernels._jit import kernel, parallel_kernel, prange
+from rinow.tolerances import LINEAR_TRIPLE
 
 UNIT_TRIANGLE = 1.0 / math.sqrt(3.0)
 """Menger curvature of a triangle of a graph without lengths, as published: the circumradius of the unit triangle,
 where the curvature of one with sides of length 1 is its inverse."""
+
+ROUNDED_SUM = 1e-15
+"""Two sums of the same three lengths differ by less than this share, in whatever order."""
 
 
 @kernel
@@ -122,9 +126,14 @@ def change_row(old, new, offsets, heads, lengths, marks):
 
 @kernel
 def menger_of(a, b, c):
-    """Menger curvature of a triangle; 0 if a side is as long as the others or longer, nan if one is 0."""
+    """Menger curvature of a triangle; 0 if the others, up to rounding, are no longer than a side; nan if one is 0."""
     product = a * b * c
-    return 4.0 * triangles.triangle_area(a, b, c) / product if product > 0.0 else np.nan
+    if not product > 0.0:
+        return np.nan
+    _, p, q, r = triangles.excesses(a, b, c)
+    if min(p, q, r) <= LINEAR_TRIPLE * max(min(a, b, c), 0.01 * max(a, b, c)):
+        return 0.0
+    return 4.0 * triangles.triangle_area(a, b, c) / product
 
 
 @kernel
@@ -140,8 +149,12 @@ def menger_sum(u, chord, unweighted, offsets, heads, distances, marks):
 
 @kernel
 def haantjes_of(length, chord):
-    """Haantjes curvature √((l - d)/d³) of a path, without the factor √24, as published for networks."""
-    return math.sqrt(max(length - chord, 0.0) / chord) / chord
+    """Haantjes curvature √((l - d)/d³) of a path, without the factor √24, as published for networks.
+
+    It is 0 for a path as short as the chord up to the rounding of both sums, whose square root would be seen.
+    """
+    excess = (length - chord) / chord
+    return math.sqrt(excess) / chord if excess > ROUNDED_SUM else 0.0
 
 
 @kernel
