@@ -56,15 +56,17 @@ class PolyhedralSurface(OneLine):
         return in_safe_unit(self.edge_lengths)
 
     @cached_property
-    def _angles_and_areas(self) -> tuple[Floats, Floats]:
-        angles, areas = np.empty((self.n_faces, 3)), np.empty(self.n_faces)
-        triangles.face_angles_and_areas(self._safe_lengths[0], angles, areas)
-        return read_only(angles), read_only(areas)
-
-    @property
     def corner_angles(self) -> Floats:
         """(n_faces, 3): Euclidean angle at each corner, in [0, pi]; the three sum to pi."""
-        return self._angles_and_areas[0]
+        angles = np.empty((self.n_faces, 3))
+        triangles.face_angles(self._safe_lengths[0], angles)
+        return read_only(angles)
+
+    @cached_property
+    def _scaled_areas(self) -> Floats:
+        areas = np.empty(self.n_faces)
+        triangles.face_areas(self._safe_lengths[0], areas)
+        return read_only(areas)
 
     @property
     def face_areas(self) -> Floats:
@@ -72,14 +74,13 @@ class PolyhedralSurface(OneLine):
 
         Below 1e-308 and above 1e308 there is no number but 0 and inf.
         """
-        areas, exponent = self._angles_and_areas[1], self._safe_lengths[1]
-        return in_unit(areas, 2 * exponent)
+        return in_unit(self._scaled_areas, 2 * self._safe_lengths[1])
 
     @cached_property
     def face_is_degenerate(self) -> NDArray[np.bool_]:
         """(n_faces,): the face takes no part, or its area is 0 within rounding."""
         longest = self._safe_lengths[0].max(axis=1)
-        proper = self._angles_and_areas[1] > tolerances.DEGENERATE_AREA * longest * longest
+        proper = self._scaled_areas > tolerances.DEGENERATE_AREA * longest * longest
         return read_only(~(proper & self.topology.face_used))
 
     @cached_property
@@ -94,7 +95,7 @@ class PolyhedralSurface(OneLine):
     def scaled_vertex_areas(self) -> Floats:
         """(n_vertices,): the same in a unit in which meshes of any size have numbers."""
         t, total = self.topology, np.empty(self.n_vertices)
-        triangles.vertex_sums_of_faces(self._angles_and_areas[1], t.corner_offsets, t.vertex_corners, total)
+        triangles.vertex_sums_of_faces(self._scaled_areas, t.corner_offsets, t.vertex_corners, total)
         return read_only(total / 3.0)
 
     @cached_property

@@ -65,7 +65,8 @@ def _metric_curvature(mesh: TriangleMesh, normals: Floats, is_closed: np.ndarray
     t = mesh.topology
     lengths, angles, areas = np.empty((mesh.n_faces, 3)), np.empty((mesh.n_faces, 3)), np.empty(mesh.n_faces)
     curves.lifted_edge_lengths(mesh.vertices, mesh.faces, normals, mesh.edge_lengths, lengths)
-    triangles.face_angles_and_areas(lengths, angles, areas)
+    triangles.face_angles(lengths, angles)
+    triangles.face_areas(lengths, areas)
     total, area = np.empty(mesh.n_vertices), np.empty(mesh.n_vertices)
     triangles.vertex_sums_of_corners(angles, t.corner_offsets, t.vertex_corners, total)
     triangles.vertex_sums_of_faces(areas, t.corner_offsets, t.vertex_corners, area)

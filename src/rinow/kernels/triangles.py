@@ -98,12 +98,18 @@ def signed_volumes(vertices, faces, face_used, flip, origin, out):
 
 
 @parallel_kernel
-def face_angles_and_areas(edge_lengths, angles, areas):
-    """Write the three corner angles and the area of each face."""
+def face_angles(edge_lengths, angles):
+    """Write the three corner angles of each face."""
     for f in prange(edge_lengths.shape[0]):
         a, b, c = edge_lengths[f, 0], edge_lengths[f, 1], edge_lengths[f, 2]
         angles[f, 0], angles[f, 1], angles[f, 2] = triangle_angles(a, b, c)
-        areas[f] = triangle_area(a, b, c)
+
+
+@parallel_kernel
+def face_areas(edge_lengths, areas):
+    """Write the area of each face."""
+    for f in prange(edge_lengths.shape[0]):
+        areas[f] = triangle_area(edge_lengths[f, 0], edge_lengths[f, 1], edge_lengths[f, 2])
 
 
 @parallel_kernel
