@@ -9,6 +9,7 @@ from rinow import tolerances
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = [
+    "crack_notes",
     "crease_notes",
     "left_out_notes",
     "merge_notes",
@@ -36,6 +37,16 @@ def merge_notes(n_merged: int) -> tuple[str, ...]:
     return (
         f"{n_merged} vertices lie on others, across a seam or an edge without length: those at one place were taken as "
         "one for the computation, and have the same values.",
+    )
+
+
+def crack_notes(n_cracks: int) -> tuple[str, ...]:
+    """What was done about cracks, the two sides of which have different vertices."""
+    if not n_cracks:
+        return ()
+    return (
+        f"{n_cracks} cracks, where vertices lie on an edge of the faces beside, were closed for the computation: these "
+        "faces were split there.",
     )
 
 
@@ -70,9 +81,9 @@ def crease_notes(on_crease: NDArray[np.bool_]) -> tuple[str, ...]:
     )
 
 
-def left_out_notes(left_out: NDArray[np.bool_] | None) -> tuple[str, ...]:
-    """What was done at vertices that tell nothing about the surface."""
-    n = 0 if left_out is None else int(np.count_nonzero(left_out))
+def left_out_notes(left_out: NDArray[np.bool_] | None, n_removed: int) -> tuple[str, ...]:
+    """What was done at vertices that tell nothing about the surface, also those taken out of the mesh before."""
+    n = n_removed + (0 if left_out is None else int(np.count_nonzero(left_out)))
     if not n:
         return ()
     return (

@@ -1,0 +1,185 @@
+"""Vertices in the middle of an edge: they lie on the chord, not on the surface, and are taken out of the mesh."""
+
+from __future__ import annotations
+
+from math import acos, cos, hypot, pi, sin
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.curvature.caps import AmidEdge
+from rinow.curvature.edits import EditedFaces, Face
+from rinow.curvature.estimate import Estimate, Floats
+from rinow.mesh import IntrinsicMesh, TriangleMesh
+
+__all__ = ["Removed", "give_values", "without_edge_points"]
+
+Mesh = TriangleMesh | IntrinsicMesh
+Place = tuple[float, float]
+
+BEND = 0.5
+"""Largest angle, in radians, between the faces on one side of the edge, and by which their angles at the vertex miss π:
+at a corner the vertex is one of the surface."""
+
+
+class Removed(NamedTuple):
+    """A vertex that was taken out, the ends of its edge, and its distance from the first over the whole length."""
+
+    vertex: int
+    start: int
+    end: int
+    share: float
+
+
+def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Removed]]:
+    """The mesh without the faces of vertices amid an edge, where the surface is smooth, and those vertices.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh or IntrinsicMesh
+        The surface.
+    amid : list of AmidEdge
+        Vertices on an edge, those that were put between others after these.
+
+    Returns
+    -------
+    mesh : TriangleMesh or IntrinsicMesh
+        The vertices are those of before; the ones in question have no face.
+    removed : list of Removed
+        Which ones, each after those that its values depend on.
+    """
+    if not amid:
+        return mesh, []
+    edited, removed = EditedFaces(mesh), list[Removed]()
+    for place in reversed(amid):
+        t, a, b = place
+        if edited.on_edge(a, t) and edited.on_edge(t, b):
+            at, tb = edited.length(a, t), edited.length(t, b)
+            if _remove(edited, place):
+                removed.append(Removed(*place, at / (at + tb)))
+    return edited.result(), removed[::-1]
+
+
+def give_values(estimate: Estimate, status: NDArray[np.uint8], removed: list[Removed]) -> None:
+    """Give the vertices that were taken out values between those of the ends of their edges, and the worse status.
+
+    The spread holds the difference of the ends as far as a value between them may miss it.
+    """
+    names = ("gaussian", "spread", "radius", "mean", "k1", "k2")
+    columns = [x for name in names if (x := getattr(estimate, name)) is not None]
+    for t, a, b, share in removed:
+        for column in columns:
+            column[t] = (1.0 - share) * column[a] + share * column[b]
+        worst = np.fmax(estimate.spread[a], estimate.spread[b])
+        estimate.spread[t] = hypot(worst, share * (1.0 - share) * (estimate.gaussian[b] - estimate.gaussian[a]))
+        nearer = a if share <= 0.5 else b
+        for directions in (estimate.direction1, estimate.direction2):
+            if directions is not None:
+                directions[t] = directions[nearer]
+        status[t] = max(status[a], status[b])
+
+
+def _remove(edited: EditedFaces, place: AmidEdge) -> bool:
+    """Fill the star of a vertex with triangles of its neighbours; whether that can be done."""
+    t, a, b = place
+    star = edited.star(t)
+    sides = _two_sides(edited, place)
+    if sides is None:
+        return False
+    if len(edited.on_edge(a, b) - star) + sum(len(side) > 2 for side in sides) != 2:
+        return False
+    new, lengths = list[Face](), {frozenset((a, b)): edited.length(a, t) + edited.length(t, b)}
+    for side in sides:
+        filled = _filled(edited, t, side, lengths)
+        if filled is None:
+            return False
+        new += filled
+    edited.replace(star, new, lengths)
+    return True
+
+
+def _two_sides(edited: EditedFaces, place: AmidEdge) -> list[list[int]] | None:
+    """The neighbours of a vertex from one end of its edge to the other on both sides; None without a closed star."""
+    t, a, b = place
+    links: dict[int, list[int]] = {}
+    for number in edited.star(t):
+        u, w = (v for v in edited.face(number) if v != t)
+        links.setdefault(u, []).append(w)
+        links.setdefault(w, []).append(u)
+    if any(len(ends) != 2 for ends in links.values()) or a not in links or b not in links:
+        return None
+    sides = list[list[int]]()
+    for following in links[a]:
+        side = [a, following]
+        while side[-1] not in (a, b):
+            before, here = side[-2:]
+            one, other = links[here]
+            side.append(other if one == before else one)
+        sides.append(side)
+    if any(side[-1] == a for side in sides) or sum(map(len, sides)) != len(links) + 2:
+        return None
+    return sides
+
+
+def _filled(edited: EditedFaces, t: int, side: list[int], lengths: dict[frozenset[int], float]) -> list[Face] | None:
+    """Triangles of the neighbours on one side, and the lengths of new edges; None where the surface has a corner."""
+    if len(side) == 2:
+        return []
+    radii = [edited.length(t, v) for v in side]
+    angles = [_angle(radii[i], radii[i + 1], edited.length(side[i], side[i + 1])) for i in range(len(side) - 1)]
+    if abs(sum(angles) - pi) > BEND or _bends(edited.mesh, t, side):
+        return None
+    turns = np.cumsum([0.0, *angles]) * (pi / sum(angles))
+    flat = {v: (r * cos(turn), r * sin(turn)) for v, r, turn in zip(side, radii, turns.tolist(), strict=True)}
+    first = next(f for f in edited.on_edge(t, side[0]) if side[1] in edited.face(f))
+    x, y, z = edited.face(first)
+    is_left = (t, side[0], side[1]) in ((x, y, z), (y, z, x), (z, x, y))
+    found, rest = list[Face](), list(side)
+    while len(rest) > 2:
+        ears = [i for i in range(len(rest)) if _is_ear(edited, flat, rest, i)]
+        if not ears:
+            return None
+        i = max(ears, key=lambda i: _least_angle([flat[rest[(i + k) % len(rest)]] for k in (-1, 0, 1)]))
+        u, v, w = rest[i - 1], rest[i], rest[(i + 1) % len(rest)]
+        found.append((u, v, w) if is_left else (w, v, u))
+        lengths.setdefault(frozenset((u, w)), hypot(flat[u][0] - flat[w][0], flat[u][1] - flat[w][1]))
+        del rest[i]
+    return found
+
+
+def _angle(a: float, b: float, c: float) -> float:
+    """Angle between the sides a and b of a triangle."""
+    return acos(min(max((a * a + b * b - c * c) / (2.0 * a * b), -1.0), 1.0))
+
+
+def _bends(mesh: Mesh, t: int, side: list[int]) -> bool:
+    """With positions: the faces on one side have normals that differ much."""
+    if isinstance(mesh, IntrinsicMesh):
+        return False
+    spokes: Floats = mesh.vertices[side] - mesh.vertices[t]
+    normals = np.cross(spokes[:-1], spokes[1:])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None]
+    return bool((normals @ normals.T).min() < cos(BEND))
+
+
+def _is_ear(edited: EditedFaces, flat: dict[int, Place], rest: list[int], i: int) -> bool:
+    """Three vertices in a row are a triangle inside of a polygon, whose new edge is not one of the mesh."""
+    u, v, w = (rest[(i + k) % len(rest)] for k in (-1, 0, 1))
+    if len(rest) > 3 and edited.on_edge(u, w):
+        return False
+    corners = [flat[x] for x in (u, v, w)]
+    others = [flat[x] for x in rest if x not in (u, v, w)]
+    if _turn(*corners) <= 0.0:
+        return False
+    return not any(all(_turn(corners[k - 1], corners[k], p) >= 0.0 for k in range(3)) for p in others)
+
+
+def _turn(p: Place, q: Place, r: Place) -> float:
+    """Twice the area of a triangle, positive to the left."""
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+
+
+def _least_angle(corners: list[Place]) -> float:
+    a, b, c = (hypot(p[0] - q[0], p[1] - q[1]) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))
+    return min(_angle(a, b, c), _angle(b, c, a), _angle(c, a, b))
