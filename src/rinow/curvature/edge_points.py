@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import acos, cos, hypot, pi, sin
+from math import acos, cos, hypot, isfinite, pi, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +21,9 @@ Place = tuple[float, float]
 BEND = 0.5
 """Largest angle, in radians, between the faces on one side of the edge, and by which their angles at the vertex miss π:
 at a corner the vertex is one of the surface."""
+
+MIDDLE = 1e-6
+"""Share of the edge by which a vertex may miss its middle: far above rounding."""
 
 
 class Removed(NamedTuple):
@@ -58,25 +61,33 @@ def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Re
             at, tb = edited.length(a, t), edited.length(t, b)
             if _remove(edited, place):
                 removed.append(Removed(*place, at / (at + tb)))
-    return edited.result(), removed[::-1]
+    return edited.result(), _on_whole_edges(removed[::-1])
+
+
+def _on_whole_edges(removed: list[Removed]) -> list[Removed]:
+    """The vertices between others that were taken out, as between the ends of the edge that these are on."""
+    found: dict[int, Removed] = {}
+    for t, a, b, share in removed:
+        whole = found.get(a) or found.get(b) or Removed(t, a, b, share)
+        places = {whole.start: 0.0, whole.end: 1.0} | {x: found[x].share for x in (a, b) if x in found}
+        place = (1.0 - share) * places[a] + share * places[b] if a in places and b in places else None
+        found[t] = Removed(t, a, b, share) if place is None else Removed(t, whole.start, whole.end, place)
+    return list(found.values())
 
 
 def give_values(estimate: Estimate, status: NDArray[np.uint8], removed: list[Removed]) -> None:
-    """Give the vertices that were taken out values between those of the ends of their edges, and the worse status.
+    """Give the vertices that were taken out the values of the nearer end of their edge, and the worse status of both.
 
-    The spread holds the difference of the ends as far as a value between them may miss it.
+    Of ends that are equally near it is the one with the smaller spread.
+
+    The spread also holds what the ends differ by, as far as the vertex is on the way.
     """
-    names = ("gaussian", "spread", "radius", "mean", "k1", "k2")
-    columns = [x for name in names if (x := getattr(estimate, name)) is not None]
     for t, a, b, share in removed:
-        for column in columns:
-            column[t] = (1.0 - share) * column[a] + share * column[b]
-        worst = np.fmax(estimate.spread[a], estimate.spread[b])
-        estimate.spread[t] = hypot(worst, share * (1.0 - share) * (estimate.gaussian[b] - estimate.gaussian[a]))
-        nearer = a if share <= 0.5 else b
-        for directions in (estimate.direction1, estimate.direction2):
-            if directions is not None:
-                directions[t] = directions[nearer]
+        is_first = share < 0.5 if abs(share - 0.5) > MIDDLE else estimate.spread[a] <= estimate.spread[b]
+        near, far, part = (a, b, share) if is_first else (b, a, 1.0 - share)
+        estimate.put(np.array([t]), np.array([near]))
+        step = part * (estimate.gaussian[far] - estimate.gaussian[near])
+        estimate.spread[t] = hypot(estimate.spread[near], step if isfinite(step) else 0.0)
         status[t] = max(status[a], status[b])
 
 

@@ -58,7 +58,7 @@ def sheet_notes(n_fins: int, n_meet: int) -> tuple[str, ...]:
     if n_meet:
         notes += (
             f"At {n_meet} vertices sheets of the surface meet: each was computed by itself, and the values there are "
-            "those of the largest (status NONMANIFOLD).",
+            "those of one that goes on beyond, or of the largest (status NONMANIFOLD).",
         )
     return notes
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.caps import AmidEdge, without_caps
 from rinow.curvature.cracks import closed_cracks, lie_on_each_other
+from rinow.curvature.crossings import partners_across
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.notes import crack_notes, merge_notes, repeat_notes, sheet_notes, weld_notes
 from rinow.kernels import cuts
@@ -178,10 +179,14 @@ class Sheets(NamedTuple):
     notes: tuple[str, ...]
 
     def largest(self, estimate: Estimate, is_special: Bools, n: int) -> tuple[Estimate, Bools]:
-        """The values, and a mark, of the sheet with the largest area at each of n vertices, if it has a value."""
+        """The values, and a mark, at each of n vertices, of one of the sheets that have a value.
+
+        It is one that goes on beyond the vertex, of several the one with the largest area.
+        """
         if self.origin is None:
             return estimate, is_special
-        order = np.lexsort((-self.mesh.vertex_areas, ~np.isfinite(estimate.gaussian), self.origin))
+        ends = self.mesh.topology.vertex_is_boundary
+        order = np.lexsort((-self.mesh.vertex_areas, ends, ~np.isfinite(estimate.gaussian), self.origin))
         rows = order[np.searchsorted(self.origin[order], np.arange(n))]
         return estimate.at(rows), is_special[rows]
 
@@ -189,7 +194,8 @@ class Sheets(NamedTuple):
 def sheets_of(mesh: Mesh) -> Sheets:
     """The sheets of a surface that meet at edges with three or more faces, or at single vertices, each by itself.
 
-    A fin, a face that stands on such an edge and is joined to nothing else, is left out.
+    A sheet goes on beyond an edge on which others stand (`partners_across`).  A fin, a face that stands on such an edge
+    and is joined to nothing else, is left out.
     """
     if not _meet(mesh).any():
         return Sheets(mesh, None, ())
@@ -200,7 +206,7 @@ def sheets_of(mesh: Mesh) -> Sheets:
     t, n_corners, origin = mesh.topology, 3 * mesh.n_faces, np.arange(mesh.n_vertices)
     labels, numbers, faces = np.empty(n_corners, np.intp), np.empty(n_corners, np.intp), mesh.faces.copy()
     rows = t.corner_offsets, t.vertex_corners
-    cuts.sectors(mesh.faces, *rows, t.partners, np.zeros(n_corners, np.bool_), labels)
+    cuts.sectors(mesh.faces, *rows, partners_across(mesh), np.zeros(n_corners, np.bool_), labels)
     origin = np.resize(origin, mesh.n_vertices + n_corners)
     n = cuts.number_sectors(mesh.n_vertices, *rows, labels, faces, origin, numbers)
     if isinstance(mesh, IntrinsicMesh):
