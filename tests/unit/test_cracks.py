@@ -7,6 +7,7 @@ import pytest
 
 import shapes
 from rinow import TriangleMesh, VertexStatus, singular_features, surface_curvature
+from rinow.curvature.redundant import redundant_vertices
 from rinow.curvature.repairs import repair, repaired
 
 SHAPE = shapes.irregular_ellipsoid(700)
@@ -35,6 +36,18 @@ def split_on_one_side(shape, face, shares, *, caps=False):
     if caps:
         new += [(p, q, b) for p, q in pairwise(chain[:-1])]
     return np.concatenate([W, points]), np.concatenate([np.delete(G, other, axis=0), new]), (a, b)
+
+
+def split_within(face, kind):
+    """A vertex that is put into a face, or on its first edge for both sides."""
+    a, b, c = F[face]
+    t = len(V)
+    if kind == "face":
+        new = [(a, b, t), (b, c, t), (c, a, t)]
+        return np.concatenate([V, [V[[a, b, c]].mean(axis=0)]]), np.concatenate([np.delete(F, face, axis=0), new])
+    W, G, _ = split_on_one_side(SHAPE, face, (0.5,))
+    row = np.flatnonzero((G == F[face]).all(axis=1))[0]
+    return W, np.concatenate([np.delete(G, row, axis=0), [(a, t, c), (t, b, c)]])
 
 
 def lat_long(n, start, stop, shift=0.0):
@@ -71,6 +84,36 @@ def test_vertices_on_an_edge_change_no_other_value(way, shares, caps):
         np.testing.assert_allclose(c.spread[len(V) :], np.hypot(clean.spread[near], step), rtol=1e-4)
     assert any(note.startswith(f"{len(shares)} vertices were left out") for note in c.notes)
     assert any(note.startswith("1 cracks, where") for note in c.notes) is not caps
+
+
+@pytest.mark.parametrize("kind", ["face", "edge"])
+def test_vertices_put_into_a_face_or_an_edge_change_no_other_value(way, kind):
+    options, clean = way
+    c = surface_curvature(split_within(100, kind), **options)
+    np.testing.assert_array_equal(c.status, VertexStatus.OK)
+    np.testing.assert_allclose(c.gaussian[:-1], clean.gaussian, rtol=1e-6)
+    assert c.gaussian[-1] in c.gaussian[F[100]]
+    assert any(note.startswith("1 vertices were left out") for note in c.notes)
+
+
+def test_patterns_of_flat_and_ruled_surfaces_are_kept():
+    # Squares with their centres: the centres have four neighbours on two lines.
+    i, j = np.indices((9, 9)).reshape(2, -1)
+    k = np.arange(72).reshape(8, 9)[:, :8].ravel()
+    mid = 81 + np.arange(64)
+    faces = np.concatenate(
+        [np.stack([x, y, mid], axis=1) for x, y in ((k, k + 9), (k + 9, k + 10), (k + 10, k + 1), (k + 1, k))]
+    )
+    x, y = (
+        np.concatenate([i, i.reshape(9, 9)[:8, :8].ravel() + 0.5]),
+        np.concatenate([j, j.reshape(9, 9)[:8, :8].ravel() + 0.5]),
+    )
+    plane, cylinder = np.stack([x, y, 0 * x], axis=1), np.stack([np.cos(x / 9), np.sin(x / 9), y / 9], axis=1)
+    for W in (plane, cylinder):
+        assert redundant_vertices(TriangleMesh(W, faces)) == []
+    # The rulings of a saddle are the sides of squares that are turned by 45 degrees.
+    saddle = np.stack([x, y, (x * x - y * y) / 20], axis=1)
+    assert redundant_vertices(TriangleMesh(saddle, faces)) == []
 
 
 @pytest.mark.parametrize("options", LENGTHS, ids=lambda way: way["method"])

@@ -12,13 +12,14 @@ from rinow.curvature.edits import EditedFaces, apex
 from rinow.kernels import triangles
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
-__all__ = ["AmidEdge", "cap_faces", "without_caps"]
+__all__ = ["ON_EDGE", "AmidEdge", "cap_faces", "without_caps"]
 
 Indices = NDArray[np.intp]
 Mesh = TriangleMesh | IntrinsicMesh
 
-ON_EDGE = 1e-12
-"""How much the two shorter sides of a face exceed the longest, over it, where the vertex between them lies on it."""
+ON_EDGE = 1e-10
+"""How much the two shorter sides of a face exceed the longest, over it, where the vertex between them lies on it: it is
+beside it by no more than 1e-5, what rounding to 32 bits leaves of a spacing of a hundredth."""
 
 
 class AmidEdge(NamedTuple):

@@ -21,8 +21,8 @@ SLIT = 0.25
 """Largest angle between the sides of a slit at an end of an edge, in radians.  Vertices of the surface beside a chord
 that turns by θ are seen from its ends under θ/2 at most; an edge that turns by more than half a radian is none of a
 surface that is resolved.  A triangle that is missing has a larger angle at one of its corners at least."""
-EXACT = 1e-6
-"""Distance from an edge over its length where a vertex is on it: far above rounding, also that of 32 bits."""
+EXACT = 1e-5
+"""Distance from an edge, over that to its nearer end, where a vertex is on it: as for `ON_EDGE`."""
 FOLDED = 0.995
 """Cosine of the angle between the faces on both sides of an edge from which on they are sheets that lie on each other:
 6 degrees, less than between the sides of a trailing edge, more than between two triangulations of a resolved sheet."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rinow.curvature.caps import AmidEdge
 from rinow.curvature.edits import EditedFaces, Face
 from rinow.curvature.estimate import Estimate, Floats
+from rinow.curvature.redundant import redundant_vertices
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = ["Removed", "give_values", "without_edge_points"]
@@ -18,9 +19,9 @@ __all__ = ["Removed", "give_values", "without_edge_points"]
 Mesh = TriangleMesh | IntrinsicMesh
 Place = tuple[float, float]
 
-BEND = 0.5
+BEND = 0.75
 """Largest angle, in radians, between the faces on one side of the edge, and by which their angles at the vertex miss π:
-at a corner the vertex is one of the surface."""
+less than at a chamfer, where the vertex may be a corner."""
 
 MIDDLE = 1e-6
 """Share of the edge by which a vertex may miss its middle: far above rounding."""
@@ -38,6 +39,8 @@ class Removed(NamedTuple):
 def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Removed]]:
     """The mesh without the faces of vertices amid an edge, where the surface is smooth, and those vertices.
 
+    With positions it is also without other vertices that lie on a face or an edge of the rest (`redundant_vertices`).
+
     Parameters
     ----------
     mesh : TriangleMesh or IntrinsicMesh
@@ -52,12 +55,18 @@ def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Re
     removed : list of Removed
         Which ones, each after those that its values depend on.
     """
+    if isinstance(mesh, TriangleMesh):
+        known = {place.vertex for place in amid}
+        amid = [*amid, *(place for place in redundant_vertices(mesh) if place.vertex not in known)]
     if not amid:
         return mesh, []
     edited, removed = EditedFaces(mesh), list[Removed]()
     for place in reversed(amid):
         t, a, b = place
-        if edited.on_edge(a, t) and edited.on_edge(t, b):
+        if a == b:
+            if _remove_from_triangle(edited, t):
+                removed.append(Removed(t, a, a, 0.0))
+        elif edited.on_edge(a, t) and edited.on_edge(t, b):
             at, tb = edited.length(a, t), edited.length(t, b)
             if _remove(edited, place):
                 removed.append(Removed(*place, at / (at + tb)))
@@ -89,6 +98,19 @@ def give_values(estimate: Estimate, status: NDArray[np.uint8], removed: list[Rem
         step = part * (estimate.gaussian[far] - estimate.gaussian[near])
         estimate.spread[t] = hypot(estimate.spread[near], step if isfinite(step) else 0.0)
         status[t] = max(status[a], status[b])
+
+
+def _remove_from_triangle(edited: EditedFaces, vertex: int) -> bool:
+    """Put one face in the place of the three around a vertex, if these are still what they were."""
+    star = sorted(edited.star(vertex))
+    corners = {v for number in star for v in edited.face(number)} - {vertex}
+    if len(star) != 3 or len(corners) != 3:
+        return False
+    x, y, z = edited.face(star[0])
+    third = next(v for v in corners if v not in (x, y, z))
+    face = tuple(third if v == vertex else v for v in (x, y, z))
+    edited.replace(star, [(face[0], face[1], face[2])], {})
+    return True
 
 
 def _remove(edited: EditedFaces, place: AmidEdge) -> bool:
