@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import acos, cos, hypot, isfinite, pi, sin
+from math import cos, hypot, isfinite, pi, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from rinow.curvature.caps import AmidEdge
 from rinow.curvature.edits import EditedFaces, Face
 from rinow.curvature.estimate import Estimate, Floats
+from rinow.curvature.outliers import fill_without, outlying_vertices
+from rinow.curvature.polygons import angle_between, triangulated
 from rinow.curvature.redundant import redundant_vertices
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
-__all__ = ["Removed", "give_values", "without_edge_points"]
+__all__ = ["Removed", "give_values", "without_edge_points", "without_strays"]
 
 Mesh = TriangleMesh | IntrinsicMesh
-Place = tuple[float, float]
 
 BEND = 0.75
 """Largest angle, in radians, between the faces on one side of the edge, and by which their angles at the vertex miss π:
@@ -34,6 +35,21 @@ class Removed(NamedTuple):
     start: int
     end: int
     share: float
+
+
+def without_strays(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Removed]]:
+    """`without_edge_points`, and with positions without vertices far beside the surface (`outlying_vertices`)."""
+    mesh, removed = without_edge_points(mesh, amid)
+    if isinstance(mesh, IntrinsicMesh):
+        return mesh, removed
+    edited = EditedFaces(mesh)
+    for t in outlying_vertices(mesh):
+        star, new = edited.star(t), fill_without(edited, t)
+        if new is not None:
+            place = _beside(edited, t, {v for face in new for v in face})
+            edited.replace(star, new, {})
+            removed.append(place)
+    return edited.result(), removed
 
 
 def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Removed]]:
@@ -64,8 +80,9 @@ def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Re
     for place in reversed(amid):
         t, a, b = place
         if a == b:
+            around = {v for number in edited.star(t) for v in edited.face(number)} - {t}
             if _remove_from_triangle(edited, t):
-                removed.append(Removed(t, a, a, 0.0))
+                removed.append(_beside(edited, t, around))
         elif edited.on_edge(a, t) and edited.on_edge(t, b):
             at, tb = edited.length(a, t), edited.length(t, b)
             if _remove(edited, place):
@@ -98,6 +115,12 @@ def give_values(estimate: Estimate, status: NDArray[np.uint8], removed: list[Rem
         step = part * (estimate.gaussian[far] - estimate.gaussian[near])
         estimate.spread[t] = hypot(estimate.spread[near], step if isfinite(step) else 0.0)
         status[t] = max(status[a], status[b])
+
+
+def _beside(edited: EditedFaces, vertex: int, around: set[int]) -> Removed:
+    """A vertex beside the nearest of those around; what that and the one farthest from it differ by counts half."""
+    near = min(sorted(around), key=lambda v: edited.length(vertex, v))
+    return Removed(vertex, near, max(sorted(around), key=lambda v: edited.length(near, v)), 0.5 - 2.0 * MIDDLE)
 
 
 def _remove_from_triangle(edited: EditedFaces, vertex: int) -> bool:
@@ -160,7 +183,7 @@ def _filled(edited: EditedFaces, t: int, side: list[int], lengths: dict[frozense
     if len(side) == 2:
         return []
     radii = [edited.length(t, v) for v in side]
-    angles = [_angle(radii[i], radii[i + 1], edited.length(side[i], side[i + 1])) for i in range(len(side) - 1)]
+    angles = [angle_between(radii[i], radii[i + 1], edited.length(side[i], side[i + 1])) for i in range(len(side) - 1)]
     if abs(sum(angles) - pi) > BEND or _bends(edited.mesh, t, side):
         return None
     turns = np.cumsum([0.0, *angles]) * (pi / sum(angles))
@@ -168,22 +191,11 @@ def _filled(edited: EditedFaces, t: int, side: list[int], lengths: dict[frozense
     first = next(f for f in edited.on_edge(t, side[0]) if side[1] in edited.face(f))
     x, y, z = edited.face(first)
     is_left = (t, side[0], side[1]) in ((x, y, z), (y, z, x), (z, x, y))
-    found, rest = list[Face](), list(side)
-    while len(rest) > 2:
-        ears = [i for i in range(len(rest)) if _is_ear(edited, flat, rest, i)]
-        if not ears:
-            return None
-        i = max(ears, key=lambda i: _least_angle([flat[rest[(i + k) % len(rest)]] for k in (-1, 0, 1)]))
-        u, v, w = rest[i - 1], rest[i], rest[(i + 1) % len(rest)]
-        found.append((u, v, w) if is_left else (w, v, u))
-        lengths.setdefault(frozenset((u, w)), hypot(flat[u][0] - flat[w][0], flat[u][1] - flat[w][1]))
-        del rest[i]
-    return found
-
-
-def _angle(a: float, b: float, c: float) -> float:
-    """Angle between the sides a and b of a triangle."""
-    return acos(min(max((a * a + b * b - c * c) / (2.0 * a * b), -1.0), 1.0))
+    found = triangulated(edited, flat, side)
+    for u, v, w in found or []:
+        for p, q in ((u, v), (v, w), (w, u)):
+            lengths.setdefault(frozenset((p, q)), hypot(flat[p][0] - flat[q][0], flat[p][1] - flat[q][1]))
+    return found if is_left or found is None else [(w, v, u) for u, v, w in found]
 
 
 def _bends(mesh: Mesh, t: int, side: list[int]) -> bool:
@@ -194,25 +206,3 @@ def _bends(mesh: Mesh, t: int, side: list[int]) -> bool:
     normals = np.cross(spokes[:-1], spokes[1:])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None]
     return bool((normals @ normals.T).min() < cos(BEND))
-
-
-def _is_ear(edited: EditedFaces, flat: dict[int, Place], rest: list[int], i: int) -> bool:
-    """Three vertices in a row are a triangle inside of a polygon, whose new edge is not one of the mesh."""
-    u, v, w = (rest[(i + k) % len(rest)] for k in (-1, 0, 1))
-    if len(rest) > 3 and edited.on_edge(u, w):
-        return False
-    corners = [flat[x] for x in (u, v, w)]
-    others = [flat[x] for x in rest if x not in (u, v, w)]
-    if _turn(*corners) <= 0.0:
-        return False
-    return not any(all(_turn(corners[k - 1], corners[k], p) >= 0.0 for k in range(3)) for p in others)
-
-
-def _turn(p: Place, q: Place, r: Place) -> float:
-    """Twice the area of a triangle, positive to the left."""
-    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
-
-
-def _least_angle(corners: list[Place]) -> float:
-    a, b, c = (hypot(p[0] - q[0], p[1] - q[1]) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))
-    return min(_angle(a, b, c), _angle(b, c, a), _angle(c, a, b))

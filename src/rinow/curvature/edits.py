@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
@@ -30,6 +31,11 @@ class EditedFaces:
         self._new: dict[int, Face | None] = {}
         self._lengths: dict[frozenset[int], float] = {}
         self._n_faces = mesh.n_faces
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """Those of the vertices; none of a mesh that is known by lengths."""
+        return self.mesh.vertices if isinstance(self.mesh, TriangleMesh) else np.empty((0, 3))
 
     def star(self, vertex: int) -> set[int]:
         """The numbers of the faces around a vertex that take part."""

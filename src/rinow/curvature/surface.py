@@ -15,7 +15,7 @@ from rinow._printing import OneLine
 from rinow.curvature.angle_defect import angle_defect
 from rinow.curvature.auto import auto
 from rinow.curvature.cut import one_sided
-from rinow.curvature.edge_points import give_values, without_edge_points
+from rinow.curvature.edge_points import give_values, without_edge_points, without_strays
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.geodesic_stars import geodesic_wald, robinson
 from rinow.curvature.intrinsic import intrinsic
@@ -188,7 +188,7 @@ def surface_curvature(
     if radius is not None:
         radius = _checked_radius(radius, chosen) * unit
     surface, index, notes, amid = repair(surface)
-    surface, removed = without_edge_points(surface, amid)
+    surface, removed = (without_edge_points if chosen == "angle_defect" else without_strays)(surface, amid)
     sheets = sheets_of(surface)
     estimate, on_crease = _estimate(sheets.mesh, chosen, quality, radius, progress, executor)
     estimate, on_crease = sheets.largest(estimate, on_crease, surface.n_vertices)
