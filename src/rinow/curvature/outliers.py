@@ -10,14 +10,18 @@ from numpy.typing import NDArray
 from rinow.curvature.edits import EditedFaces, Face
 from rinow.curvature.polygons import Place, triangulated
 from rinow.curvature.stencils import ring_means
-from rinow.mesh import TriangleMesh
+from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = ["fill_without", "outlying_vertices"]
 
+Mesh = TriangleMesh | IntrinsicMesh
 Floats = NDArray[np.float64]
 
 LEAST = 0.25
-"""Angle defect in radians from which on a vertex is looked at: that of one 0.3 spacings beside the surface."""
+"""Angle defect in radians from which on a vertex is looked at: that of one 0.3 spacings above the surface."""
+FAR, ASIDE = 0.4, 0.1
+"""Height over its neighbours, and distance from the polygon that they are, over the mean edge around: below that it may
+be noise, which fits are made for."""
 PEAK, PASSES = 6.0, 3
 """Squared defect over its mean over so many rings: one that stands alone has ten times it, noise rarely five times."""
 CLEAR = 8.0
@@ -29,7 +33,8 @@ def outlying_vertices(mesh: TriangleMesh) -> list[int]:
     """Vertices that the surface is better without, no two of them beside each other.
 
     A vertex that was moved has a defect of one sign, its neighbours have as much of the other one, and nobody farther
-    away has any to speak of.  It is that of these whose removal leaves the least.
+    away has any to speak of.  It is that of these whose removal leaves the least, if it is far from what takes its
+    place.  At a boundary half of that is not seen.
     """
     t = mesh.topology
     inner = t.vertex_is_manifold & ~t.vertex_is_boundary
@@ -46,20 +51,20 @@ def outlying_vertices(mesh: TriangleMesh) -> list[int]:
         around = {w for u in zone for w in _neighbours(mesh, u)}
         before = abs(float(defects[v]))
         left = before / CLEAR
-        members = list(zone)
-        if touched & around or not inner[members].all() or abs(float(defects[members].sum())) > left:
+        total = abs(float(defects[list(zone)].sum()))
+        if touched & around or not inner[list(around)].all() or total > left:
             continue
         if any(abs(defects[w]) > left for w in around - zone):
             continue
         trials = {u: max(_defects_without(edited, defects, u, zone), default=np.inf) for u in sorted(zone)}
         best = min(trials, key=lambda u: trials[u])
-        if trials[best] <= left:
+        if trials[best] <= left and _is_far(edited, best, around - {best}):
             found.append(best)
             touched |= around
     return found
 
 
-def _neighbours(mesh: TriangleMesh, vertex: int) -> list[int]:
+def _neighbours(mesh: Mesh, vertex: int) -> list[int]:
     t = mesh.topology
     return t.neighbours[t.neighbour_offsets[vertex] : t.neighbour_offsets[vertex + 1]].tolist()
 
@@ -85,8 +90,24 @@ def _angle_at(edited: EditedFaces, face: Face, vertex: int) -> float:
     return float(np.arctan2(np.linalg.norm(np.cross(u, w)), u @ w))
 
 
-def fill_without(edited: EditedFaces, vertex: int) -> list[Face] | None:
-    """Triangles of the neighbours of a vertex in the place of its star; None where that is no simple polygon."""
+def _is_far(edited: EditedFaces, vertex: int, around: set[int]) -> bool:
+    """The vertex is beside the polygon of its neighbours, above it or in its plane."""
+    ring = _ring(edited, vertex)
+    polygon = None if ring is None else _flattened(edited.positions[ring], edited.positions[vertex])
+    if polygon is None:
+        return False
+    corners, (x, y), height = polygon
+    following = np.roll(corners, -1, axis=0)
+    sides, to = following - corners, np.array([x, y]) - corners
+    is_inside = np.all(sides[:, 0] * to[:, 1] - sides[:, 1] * to[:, 0] >= 0.0)
+    shares = np.clip(np.sum(sides * to, axis=1) / np.sum(sides * sides, axis=1), 0.0, 1.0)
+    aside = 0.0 if is_inside else float(np.linalg.norm(to - shares[:, None] * sides, axis=1).min())
+    edges = [edited.length(u, w) for u in around for w in _neighbours(edited.mesh, u) if w in around]
+    return bool(np.hypot(aside / ASIDE, height / FAR) > np.mean(edges))
+
+
+def _ring(edited: EditedFaces, vertex: int) -> list[int] | None:
+    """The neighbours of a vertex in their order; None without a closed star of faces that agree."""
     after: dict[int, int] = {}
     for number in edited.star(vertex):
         face = edited.face(number)
@@ -95,16 +116,28 @@ def fill_without(edited: EditedFaces, vertex: int) -> list[Face] | None:
     ring = [min(after)] if after else []
     while ring and after.get(ring[-1], ring[0]) != ring[0] and len(ring) <= len(after):
         ring.append(after[ring[-1]])
-    if len(ring) < 3 or len(ring) != len(after) or after.get(ring[-1]) != ring[0]:
-        return None
-    p = edited.positions[ring]
-    p = p - p.mean(axis=0)
+    closed = len(ring) >= 3 and len(ring) == len(after) and after.get(ring[-1]) == ring[0]
+    return ring if closed else None
+
+
+def _flattened(polygon: Floats, point: Floats) -> tuple[Floats, Floats, float] | None:
+    """A polygon and a point in its mean plane, and the height of the point; None without a plane."""
+    centre = polygon.mean(axis=0)
+    p = polygon - centre
     normal = np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0)
     across = np.cross(normal, p[0])
-    size = np.linalg.norm(across)
-    if not size > 0.0:
+    size, area = np.linalg.norm(across), np.linalg.norm(normal)
+    if not (size > 0.0 and area > 0.0):
         return None
-    across /= size
-    along = np.cross(across, normal / np.linalg.norm(normal))
-    flat: dict[int, Place] = dict(zip(ring, zip((p @ along).tolist(), (p @ across).tolist(), strict=True), strict=True))
+    plane = np.stack([np.cross(across / size, normal / area), across / size], axis=1)
+    return p @ plane, (point - centre) @ plane, abs(float((point - centre) @ normal / area))
+
+
+def fill_without(edited: EditedFaces, vertex: int) -> list[Face] | None:
+    """Triangles of the neighbours of a vertex in the place of its star; None where that is no simple polygon."""
+    ring = _ring(edited, vertex)
+    polygon = None if ring is None else _flattened(edited.positions[ring], edited.positions[vertex])
+    if ring is None or polygon is None:
+        return None
+    flat: dict[int, Place] = {v: (x, y) for v, (x, y) in zip(ring, polygon[0].tolist(), strict=True)}
     return triangulated(edited, flat, ring)
