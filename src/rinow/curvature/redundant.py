@@ -43,7 +43,9 @@ def redundant_vertices(mesh: TriangleMesh) -> list[AmidEdge]:
 
 
 def _is_curved(mesh: TriangleMesh, around: Indices) -> NDArray[np.bool_]:
-    return np.all(np.abs(mesh.vertex_angle_defects[around]) > CURVED, axis=1)
+    """The surface bends at all of the neighbours; at the boundary nobody can tell."""
+    curved = (np.abs(mesh.vertex_angle_defects[around]) > CURVED) & ~mesh.topology.vertex_is_boundary[around]
+    return np.all(curved, axis=1)
 
 
 def _in_triangles(mesh: TriangleMesh, vertices: Indices, around: Indices) -> list[AmidEdge]:
