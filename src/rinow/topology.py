@@ -102,6 +102,11 @@ class Topology:
         return np.stack([self.faces[f, k], self.faces[f, (k + 1) % 3]], axis=1)
 
     @cached_property
+    def boundary_halfedges(self) -> Indices:
+        """(k,): the half-edges of edges with one face, ascending."""
+        return read_only(np.flatnonzero(self.partners == adjacency.BOUNDARY))
+
+    @cached_property
     def edge_is_boundary(self) -> Bools:
         """(n_edges,): the edge has one face."""
         return read_only(self.partners[self.edge_halfedges] == adjacency.BOUNDARY)

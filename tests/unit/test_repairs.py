@@ -150,3 +150,49 @@ def test_a_wall_on_a_surface_does_not_bend_it(quality):
     off = (y != 0) & (c.status[: n * n] == VertexStatus.OK)
     np.testing.assert_allclose(c.gaussian[: n * n][off], expected[off], rtol=0.01)
     assert (c.status[i[:, 6]] == VertexStatus.NONMANIFOLD).all()
+
+
+def standing_on(path, height, rows):
+    """A sheet of `rows` rows above a row of vertices of the ellipsoid, after its vertices and faces."""
+    p = np.concatenate([V, *(V[path] * (1 + height * (k + 1)) for k in range(rows))])
+    i = np.concatenate([[path], len(V) + np.arange(rows * len(path)).reshape(rows, -1)])
+    a, b, c, d = i[:-1, :-1].ravel(), i[:-1, 1:].ravel(), i[1:, 1:].ravel(), i[1:, :-1].ravel()
+    return p, np.concatenate([F, np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+
+
+def path_of_edges(n):
+    """Vertices in a row along edges, about straight."""
+    t, path = TriangleMesh(V, F).topology, [int(np.argmax(V[:, 2]))]
+    while len(path) < n:
+        near = t.neighbours[t.neighbour_offsets[path[-1]] : t.neighbour_offsets[path[-1] + 1]]
+        path.append(int(near[np.argmax(V[near, 0] - np.abs(V[near, 1]))]))
+    return np.array(path)
+
+
+@pytest.mark.parametrize("sides", [(1,), (1, -1)], ids=["wall", "crossing"])
+def test_a_sheet_that_stands_on_a_surface_does_not_cut_it(way, sides):
+    options, clean = way
+    path = path_of_edges(7)
+    W, G = standing_on(path, 0.1 * sides[0], 4)
+    if len(sides) == 2:  # it goes on below
+        below, faces = standing_on(path, -0.1, 4)
+        more = np.where(faces[len(F) :] < len(V), faces[len(F) :], faces[len(F) :] + len(W) - len(V))
+        W, G = np.concatenate([W, below[len(V) :]]), np.concatenate([G, more])
+    c = surface_curvature((W, G), **options)
+    off = np.setdiff1d(np.arange(len(V)), path)
+    np.testing.assert_allclose(c.gaussian[off], clean.gaussian[off], rtol=1e-6)
+    assert (c.status[off] == VertexStatus.OK).all()
+    assert (c.status[path] == VertexStatus.NONMANIFOLD).all()
+    if len(sides) == 1:
+        np.testing.assert_allclose(c.gaussian[path], clean.gaussian[path], rtol=1e-6)
+
+
+def test_films_that_meet_under_equal_angles_are_three_sheets():
+    u = np.radians([0, 120, 240])
+    p = np.concatenate([[(0, 0, 0), (0, 0, 1)], np.stack([np.cos(u), np.sin(u), 0.5 + 0 * u], axis=1)])
+    u = np.radians([0, 175, 190])  # and two that leave the first one alike
+    q = np.concatenate([p[:2], np.stack([np.cos(u), np.sin(u), 0.5 + 0 * u], axis=1)])
+    q[:, 0] += 5
+    F = np.array([(0, 1, 2), (0, 1, 3), (0, 1, 4)])
+    t = sheets_of(TriangleMesh(np.concatenate([p, q]), np.concatenate([F, F + 5]))).mesh.topology
+    assert t.n_components == 6

@@ -7,7 +7,9 @@ Points of any metric space
 Graphs
     `graph`, over `graph_rows` and `graph_wald`.
 Surfaces
-    `surface` takes a method and gives a result with a status (`status`, `notes`) for the mesh as `repairs` leave it;
+    `surface` takes a method and gives a result with a status (`status`, `notes`) for the mesh as `repairs` leave it
+    (over `cracks`, `caps`, `edits`, `crossings`) and `edge_points` with `redundant`,
+    `outliers`, `polygons`;
     each method makes an `estimate`.
 
     - Edge lengths alone: `angle_defect`, `wald`, `geodesic_stars`; `intrinsic` with `flow`, `waves`, `arcs`,

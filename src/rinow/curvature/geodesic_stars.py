@@ -21,6 +21,7 @@ from rinow.mesh import IntrinsicMesh, TriangleMesh
 __all__ = ["geodesic_wald", "robinson"]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 
 PATCH, BLOCK = 200, 4096
@@ -33,6 +34,9 @@ PASSES = 3
 """Repetitions of the mean over a ring that average squared differences."""
 CALIBRATION = 1.5
 """Spread over that mean difference: the error of order radius² is twice the difference, that of noise below it."""
+RESOLVED = 1.5
+"""Least radius that is resolved, in local spacings.  A mesh has its curvature at vertices: with a radius of one spacing
+`robinson` sees half of it, with two spacings nine tenths."""
 SLACK = 1.3
 """Radius of balls in which the distances between ends are looked for, over those distances in the plane."""
 ORDER = 2
@@ -86,7 +90,7 @@ def geodesic_wald(mesh: TriangleMesh | IntrinsicMesh, radius: float) -> Estimate
     values[0, small] = ring.gaussian[small]
     radii[small] = ring.radius[small]
     estimate = _estimate(mesh, values, radii)
-    estimate.spread[small] = ring.spread[small]
+    estimate.spread[small] = np.hypot(ring.spread[small], estimate.spread[small])
     return estimate
 
 
@@ -103,7 +107,8 @@ def robinson(mesh: TriangleMesh | IntrinsicMesh, radius: float | None = None) ->
     Returns
     -------
     estimate : Estimate
-        As for `geodesic_wald`, but nan where too few vertices are in reach.
+        As for `geodesic_wald`, but nan where too few vertices are in reach.  A vertex less than 1.5 spacings from the
+        boundary has the mean of those beside it that are farther away, and the spread that of the values around too.
 
     Notes
     -----
@@ -113,9 +118,30 @@ def robinson(mesh: TriangleMesh | IntrinsicMesh, radius: float | None = None) ->
     triangle (v, b, q), whose angle grows by the turn.  The value is the mean over both ends of all four lines, which
     by its symmetry has an error of second order in the radius.
     """
-    sizes = SPACINGS * CurvatureFlow(mesh).spacing if radius is None else np.full(mesh.n_vertices, radius)
+    flow = CurvatureFlow(mesh)
+    sizes = SPACINGS * flow.spacing if radius is None else np.full(mesh.n_vertices, radius)
     values, radii = _both(mesh, sizes, _robinson_values)
-    return _estimate(mesh, values, radii)
+    estimate = _estimate(mesh, values, radii.copy())
+    _take_from_beside(flow, estimate, (radii < RESOLVED * flow.spacing) & (radii < sizes))
+    return estimate
+
+
+def _take_from_beside(flow: CurvatureFlow, estimate: Estimate, to_fill: Bools) -> None:
+    """Give vertices the means of others in the two rings around, those farther in first, as far as there are any.
+
+    The spread takes the differences of these from the mean twice: the vertex is beside them, not amid.
+    """
+    K, spread, radii = estimate.gaussian, estimate.spread, estimate.radius
+    known, filled = np.isfinite(K) & np.isfinite(spread) & ~to_fill, to_fill
+    while filled.any():
+        columns = np.column_stack([known.astype(np.float64), K, K * K, spread * spread, radii])
+        columns[~known] = 0.0
+        share, mean, square, variance, radius = flow.means(columns, 2).T
+        filled = to_fill & ~known & (share > 0.0)
+        K[filled], radii[filled] = mean[filled] / share[filled], radius[filled] / share[filled]
+        around = np.maximum(square[filled] / share[filled] - K[filled] ** 2, 0.0)
+        spread[filled] = np.sqrt(variance[filled] / share[filled] + 4.0 * around)
+        known |= filled
 
 
 def _both(mesh: TriangleMesh | IntrinsicMesh, sizes: Floats, method: Method) -> tuple[Floats, Floats]:
@@ -142,7 +168,7 @@ def _mirrored(balls: GeodesicBalls) -> GeodesicBalls:
     return replace(balls, directions=-balls.directions)
 
 
-def _ends(balls: GeodesicBalls, is_boundary: NDArray[np.bool_], sizes: Floats, share: float) -> _Ends:
+def _ends(balls: GeodesicBalls, is_boundary: Bools, sizes: Floats, share: float) -> _Ends:
     n, radii = len(sizes), sizes.copy()
     entries, bends = np.full((n, 2 * kernels.LINES), -1, np.intp), np.full((n, kernels.LINES), np.nan)
     ball = balls.vertices, balls.distances, balls.directions
@@ -196,9 +222,17 @@ def _robinson_values(geodesics: ExactGeodesics, ends: _Ends) -> Floats:
 
 
 def _estimate(mesh: TriangleMesh | IntrinsicMesh, values: Floats, radii: Floats) -> Estimate:
-    """The values of the larger radius; their spread from those of the smaller one."""
-    squares = CurvatureFlow(mesh).means((values[0] - values[1]) ** 2, PASSES)
-    spread = CALIBRATION * np.sqrt(squares)
+    """The values of the larger radius; their spread from those of the smaller one, or all of them without any.
+
+    Radii near the spacing see a share of the curvature that the spread takes into account.
+    """
+    flow, squares = CurvatureFlow(mesh), (values[0] - values[1]) ** 2
+    known = np.isfinite(squares)
+    sums, shares = flow.means(np.column_stack([np.where(known, squares, 0.0), known.astype(np.float64)]), PASSES).T
+    squares = CALIBRATION**2 * np.divide(sums, shares, out=values[0] ** 2, where=shares > 0.0)
+    small = np.flatnonzero(radii < RESOLVED * flow.spacing)
+    squares[small] += values[0, small] ** 2 * (flow.spacing[small] / radii[small]) ** 4
+    spread = np.sqrt(squares)
     missing = np.isnan(values[0])
     radii[missing], spread[missing] = np.nan, np.nan
     return Estimate(values[0].copy(), spread, radii)

@@ -9,6 +9,7 @@ from rinow import tolerances
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = [
+    "crack_notes",
     "crease_notes",
     "left_out_notes",
     "merge_notes",
@@ -39,6 +40,16 @@ def merge_notes(n_merged: int) -> tuple[str, ...]:
     )
 
 
+def crack_notes(n_cracks: int) -> tuple[str, ...]:
+    """What was done about cracks, the two sides of which have different vertices."""
+    if not n_cracks:
+        return ()
+    return (
+        f"{n_cracks} cracks, where vertices lie on an edge of the faces beside, were closed for the computation: these "
+        "faces were split there.",
+    )
+
+
 def sheet_notes(n_fins: int, n_meet: int) -> tuple[str, ...]:
     """What was done where more than one sheet meets, at so many vertices."""
     notes: tuple[str, ...] = ()
@@ -47,7 +58,7 @@ def sheet_notes(n_fins: int, n_meet: int) -> tuple[str, ...]:
     if n_meet:
         notes += (
             f"At {n_meet} vertices sheets of the surface meet: each was computed by itself, and the values there are "
-            "those of the largest (status NONMANIFOLD).",
+            "those of one that goes on beyond, or of the largest (status NONMANIFOLD).",
         )
     return notes
 
@@ -70,9 +81,9 @@ def crease_notes(on_crease: NDArray[np.bool_]) -> tuple[str, ...]:
     )
 
 
-def left_out_notes(left_out: NDArray[np.bool_] | None) -> tuple[str, ...]:
-    """What was done at vertices that tell nothing about the surface."""
-    n = 0 if left_out is None else int(np.count_nonzero(left_out))
+def left_out_notes(left_out: NDArray[np.bool_] | None, n_removed: int) -> tuple[str, ...]:
+    """What was done at vertices that tell nothing about the surface, also those taken out of the mesh before."""
+    n = n_removed + (0 if left_out is None else int(np.count_nonzero(left_out)))
     if not n:
         return ()
     return (

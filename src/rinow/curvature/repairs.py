@@ -7,14 +7,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.caps import AmidEdge, without_caps
+from rinow.curvature.cracks import closed_cracks, lie_on_each_other
+from rinow.curvature.crossings import partners_across
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.notes import merge_notes, repeat_notes, sheet_notes, weld_notes
+from rinow.curvature.notes import crack_notes, merge_notes, repeat_notes, sheet_notes, weld_notes
 from rinow.kernels import cuts
 from rinow.kernels.adjacency import BOUNDARY, NONMANIFOLD
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 from rinow.topology import clusters
 
-__all__ = ["Sheets", "repaired", "sheets_of", "without_repeats"]
+__all__ = ["Repair", "Sheets", "repair", "repaired", "sheets_of", "without_repeats"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -26,26 +29,36 @@ POINT = 1e-6
 beside the shortest edge of both: far above rounding, far below what anybody models."""
 
 
+class Repair(NamedTuple):
+    """The surface that a mesh stands for."""
+
+    mesh: Mesh
+    """The mesh itself if there is nothing to do."""
+    vertex_map: Indices | None
+    """(n_vertices,): the vertex of the surface for each one of the mesh, if they are other ones."""
+    notes: tuple[str, ...]
+    """What was done."""
+    amid: list[AmidEdge]
+    """Vertices of the surface that lie on an edge, since a face was split there."""
+
+
 def repaired(mesh: Mesh) -> tuple[Mesh, Indices | None, tuple[str, ...]]:
+    """`repair` without the vertices amid an edge."""
+    return repair(mesh)[:3]
+
+
+def repair(mesh: Mesh) -> Repair:
     """The surface that a mesh stands for.
 
     Vertices of a soup are welded, the ends of edges without length and the two sides of a seam are taken as one vertex,
     and each face once.  A seam is a pair of boundary edges at the same place, as the edges of a texture leave it; two
-    sheets that lie on each other are none.
+    sheets that lie on each other are none.  Cracks, where vertices lie on an edge of the other side, are closed, and
+    faces without area are joined to their neighbours.
 
     Parameters
     ----------
     mesh : TriangleMesh or IntrinsicMesh
-        The surface; seams are seen by positions only.
-
-    Returns
-    -------
-    surface : TriangleMesh or IntrinsicMesh
-        `mesh` itself if there is nothing to do.
-    index : (n_vertices,) ndarray of intp, or None
-        The vertex of `surface` for each one of `mesh`, if they are other ones.
-    notes : tuple of str
-        What was done.
+        The surface; seams and cracks are seen by positions only.
     """
     n, index, notes = mesh.n_vertices, None, ()
     if isinstance(mesh, TriangleMesh) and mesh.is_soup:
@@ -53,13 +66,35 @@ def repaired(mesh: Mesh) -> tuple[Mesh, Indices | None, tuple[str, ...]]:
         notes = weld_notes(n, mesh.n_vertices)
     before = mesh.n_vertices
     for pairs_of in (_edges_without_length, _seams):
-        pairs = pairs_of(mesh)
-        if len(pairs):
-            mesh, new = _merged(mesh, pairs)
-            index = new if index is None else new[index]
+        mesh, index = _joined(mesh, pairs_of(mesh), index)
+    mesh, index, amid, n_cracks = _without_cracks(mesh, index)
     notes += merge_notes(before - mesh.n_vertices)
     mesh, n_repeated = without_repeats(mesh)
-    return mesh, index, notes + repeat_notes(n_repeated)
+    mesh, on_caps = without_caps(mesh)
+    return Repair(mesh, index, notes + crack_notes(n_cracks) + repeat_notes(n_repeated), [*amid, *on_caps])
+
+
+def _without_cracks(mesh: Mesh, index: Indices | None) -> tuple[Mesh, Indices | None, list[AmidEdge], int]:
+    """The mesh with its cracks closed, the new index, the vertices amid an edge, and the number of cracks."""
+    ends = mesh.topology.halfedge_ends(mesh.topology.boundary_halfedges)
+    if len(ends) < 3 or isinstance(mesh, IntrinsicMesh):
+        return mesh, index, [], 0
+    closed = closed_cracks(mesh, _places(mesh.vertices, ends, _distances(mesh.vertices, ends)))
+    if not closed.n_cracks:
+        return mesh, index, [], 0
+    if not len(closed.pairs):
+        return closed.mesh, index, closed.amid, closed.n_cracks
+    mesh, new = _merged(closed.mesh, closed.pairs)
+    amid = [AmidEdge(*new[list(place)].tolist()) for place in closed.amid]
+    return mesh, new if index is None else new[index], amid, closed.n_cracks
+
+
+def _joined(mesh: Mesh, pairs: Indices, index: Indices | None) -> tuple[Mesh, Indices | None]:
+    """The mesh with the vertices of each pair as one, and the new index."""
+    if not len(pairs):
+        return mesh, index
+    mesh, new = _merged(mesh, pairs)
+    return mesh, new if index is None else new[index]
 
 
 def _merged(mesh: Mesh, pairs: Indices) -> tuple[Mesh, Indices]:
@@ -84,24 +119,28 @@ def _edges_without_length(mesh: Mesh) -> Indices:
 
 def _seams(mesh: Mesh) -> Indices:
     """(k, 2): vertices of two boundary edges that lie on each other."""
-    t = mesh.topology
-    h = np.flatnonzero(t.partners == BOUNDARY)
+    h = mesh.topology.boundary_halfedges
     if len(h) < 2 or isinstance(mesh, IntrinsicMesh):
         return np.empty((0, 2), np.intp)
-    V, ends = mesh.vertices, t.halfedge_ends(h)
-    lengths = np.linalg.norm(V[ends[:, 0]] - V[ends[:, 1]], axis=1)
+    V, ends = mesh.vertices, mesh.topology.halfedge_ends(h)
+    lengths = _distances(V, ends)
     place = _places(V, ends, lengths)
     _, group, size = np.unique(np.sort(place[ends], axis=1), axis=0, return_inverse=True, return_counts=True)
     group = group.ravel()
     order = np.argsort(group, kind="stable")
     i, j = order[size[group[order]] == 2].reshape(-1, 2).T
     apexes = V[mesh.faces[h // 3, (h % 3 + 2) % 3]]
-    apart = np.linalg.norm(apexes[i] - apexes[j], axis=1) > POINT * lengths[i]
+    starts = V[ends[i, 0]]
+    apart = ~lie_on_each_other(V[ends[i, 1]] - starts, apexes[i] - starts, apexes[j] - starts)
     i, j = i[apart], j[apart]
     turned = place[ends[i, 0]] != place[ends[j, 0]]
     theirs = np.where(turned[:, None], ends[j, ::-1], ends[j])
     pairs = np.stack([ends[i], theirs], axis=2).reshape(-1, 2)
     return pairs[pairs[:, 0] != pairs[:, 1]]
+
+
+def _distances(vertices: Floats, ends: Indices) -> Floats:
+    return np.linalg.norm(vertices[ends[:, 0]] - vertices[ends[:, 1]], axis=1)
 
 
 def _places(vertices: Floats, ends: Indices, lengths: Floats) -> Indices:
@@ -140,10 +179,14 @@ class Sheets(NamedTuple):
     notes: tuple[str, ...]
 
     def largest(self, estimate: Estimate, is_special: Bools, n: int) -> tuple[Estimate, Bools]:
-        """The values, and a mark, of the sheet with the largest area at each of n vertices, if it has a value."""
+        """The values, and a mark, at each of n vertices, of one of the sheets that have a value.
+
+        It is one that goes on beyond the vertex, of several the one with the largest area.
+        """
         if self.origin is None:
             return estimate, is_special
-        order = np.lexsort((-self.mesh.vertex_areas, ~np.isfinite(estimate.gaussian), self.origin))
+        ends = self.mesh.topology.vertex_is_boundary
+        order = np.lexsort((-self.mesh.vertex_areas, ends, ~np.isfinite(estimate.gaussian), self.origin))
         rows = order[np.searchsorted(self.origin[order], np.arange(n))]
         return estimate.at(rows), is_special[rows]
 
@@ -151,7 +194,8 @@ class Sheets(NamedTuple):
 def sheets_of(mesh: Mesh) -> Sheets:
     """The sheets of a surface that meet at edges with three or more faces, or at single vertices, each by itself.
 
-    A fin, a face that stands on such an edge and is joined to nothing else, is left out.
+    A sheet goes on beyond an edge on which others stand (`partners_across`).  A fin, a face that stands on such an edge
+    and is joined to nothing else, is left out.
     """
     if not _meet(mesh).any():
         return Sheets(mesh, None, ())
@@ -162,7 +206,7 @@ def sheets_of(mesh: Mesh) -> Sheets:
     t, n_corners, origin = mesh.topology, 3 * mesh.n_faces, np.arange(mesh.n_vertices)
     labels, numbers, faces = np.empty(n_corners, np.intp), np.empty(n_corners, np.intp), mesh.faces.copy()
     rows = t.corner_offsets, t.vertex_corners
-    cuts.sectors(mesh.faces, *rows, t.partners, np.zeros(n_corners, np.bool_), labels)
+    cuts.sectors(mesh.faces, *rows, partners_across(mesh), np.zeros(n_corners, np.bool_), labels)
     origin = np.resize(origin, mesh.n_vertices + n_corners)
     n = cuts.number_sectors(mesh.n_vertices, *rows, labels, faces, origin, numbers)
     if isinstance(mesh, IntrinsicMesh):

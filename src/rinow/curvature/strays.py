@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from rinow.curvature.caps import cap_faces
 from rinow.curvature.cloud_layers import DEVIATIONS, NEAREST, SPACINGS
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, cloud_strays, stencils
@@ -20,9 +21,6 @@ Indices = NDArray[np.intp]
 
 ALONE = 4.0
 """Square of a height over the neighbours, over the mean square of theirs, from which on it may be a spike."""
-
-ON_EDGE = 1e-12
-"""How much the two shorter sides of a face exceed the longest, over it, where the vertex between them lies on it."""
 
 
 def stray_vertices(mesh: TriangleMesh) -> tuple[Bools, Indices, Indices]:
@@ -41,13 +39,7 @@ def stray_vertices(mesh: TriangleMesh) -> tuple[Bools, Indices, Indices]:
         Those on an edge, and for each the end of the edge that is nearer to it.
     """
     is_stray = np.zeros(mesh.n_vertices, np.bool_)
-    L = mesh.edge_lengths
-    a, b, c = L.T
-    with np.errstate(invalid="ignore"):
-        longest = np.maximum(np.maximum(a, b), c)
-        thin = np.flatnonzero(a + b + c - 2.0 * longest <= ON_EDGE * longest)
-    thin = thin[mesh.topology.face_used[thin]]
-    thin = thin[np.all(L[thin] > 0.0, axis=1)]
+    L, thin = mesh.edge_lengths, cap_faces(mesh)
     apex = np.argmax(L[thin], axis=1)
     sides = np.stack([(apex + 1) % 3, (apex + 2) % 3], axis=1)
     # Column k is opposite corner k: the nearer end is the corner opposite the longer one of the two sides.

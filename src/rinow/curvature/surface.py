@@ -15,12 +15,13 @@ from rinow._printing import OneLine
 from rinow.curvature.angle_defect import angle_defect
 from rinow.curvature.auto import auto
 from rinow.curvature.cut import one_sided
+from rinow.curvature.edge_points import give_values, without_edge_points, without_strays
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.geodesic_stars import geodesic_wald, robinson
 from rinow.curvature.intrinsic import intrinsic
 from rinow.curvature.lifted import lifted
 from rinow.curvature.notes import crease_notes, left_out_notes, mesh_notes
-from rinow.curvature.repairs import repaired, sheets_of
+from rinow.curvature.repairs import repair, sheets_of
 from rinow.curvature.sectional import sectional
 from rinow.curvature.status import VertexStatus, vertex_status
 from rinow.curvature.wald import wald
@@ -121,8 +122,8 @@ def surface_curvature(
     ----------
     mesh : TriangleMesh, IntrinsicMesh, (V, F) pair, or object with vertices and faces
         The surface.  Vertices may be unused or not finite, faces degenerate, misoriented or not manifold: `status`
-        tells where no value is defined.  A soup of separate triangles is welded for the computation, seams are
-        closed, each face counts once, and sheets that meet are computed apart.
+        tells where no value is defined.  A soup of separate triangles is welded for the computation, seams and
+        cracks are closed, each face counts once, and sheets that meet are computed apart.
     method : {"auto", "sectional", "lifted", "intrinsic", "wald", "robinson", "angle_defect"}, optional
         "sectional" fits polynomials of order 2 to 8 to the deviations from an osculating torus; "lifted" takes the
         angles of the star after its edges were lifted to arcs; "intrinsic" averages angle defects; "wald" is the
@@ -186,15 +187,17 @@ def surface_curvature(
     chosen = _chosen_method(method, quality, surface)
     if radius is not None:
         radius = _checked_radius(radius, chosen) * unit
-    surface, index, notes = repaired(surface)
+    surface, index, notes, amid = repair(surface)
+    surface, removed = (without_edge_points if chosen == "angle_defect" else without_strays)(surface, amid)
     sheets = sheets_of(surface)
     estimate, on_crease = _estimate(sheets.mesh, chosen, quality, radius, progress, executor)
     estimate, on_crease = sheets.largest(estimate, on_crease, surface.n_vertices)
     status = vertex_status(surface)
     status[on_crease & (status == VertexStatus.OK)] = VertexStatus.BOUNDARY
+    give_values(estimate, status, removed)
     result = assembled(estimate, status, chosen)
     notes += mesh_notes(surface, oriented=chosen not in BY_LENGTHS) + sheets.notes + crease_notes(on_crease)
-    notes += left_out_notes(estimate.left_out)
+    notes += left_out_notes(estimate.left_out, len(removed))
     return replace(relabelled(rescaled(result, unit), index), notes=notes)
 
 

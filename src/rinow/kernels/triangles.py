@@ -75,6 +75,15 @@ def distance(vertices, i, j):
 
 
 @parallel_kernel
+def linear_faces(lengths, share, out):
+    """Write to out[f] whether sides longer than 0 exceed twice the longest by no more than a share of it."""
+    for f in prange(lengths.shape[0]):
+        a, b, c = lengths[f, 0], lengths[f, 1], lengths[f, 2]
+        longest = max(max(a, b), c)
+        out[f] = min(min(a, b), c) > 0.0 and a + b + c - 2.0 * longest <= share * longest
+
+
+@parallel_kernel
 def face_edge_lengths(vertices, faces, out):
     """Write the three side lengths of each face, column k opposite corner k."""
     for f in prange(faces.shape[0]):

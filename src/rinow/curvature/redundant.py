@@ -1,0 +1,93 @@
+"""Vertices without which the polyhedral surface is the same: amid a face, or an edge that was split on both sides."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rinow.curvature.caps import ON_EDGE, AmidEdge
+from rinow.mesh import TriangleMesh
+
+__all__ = ["redundant_vertices"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+CURVED = 1e-7
+"""Angle defect of all neighbours from which on the surface around is none that can be developed: facets and cylinders
+are full of such vertices, and no harm comes of them."""
+IN_PLANE = 1e-5
+"""Height of a vertex over the triangle of its three neighbours, over the longest side, where it is in it: that of a
+vertex on an edge by `ON_EDGE`."""
+OPPOSITE = 1e-4
+"""Angle in radians by which an edge may miss the continuation of another one."""
+
+
+def redundant_vertices(mesh: TriangleMesh) -> list[AmidEdge]:
+    """Vertices with four neighbours two of which are the ends of an edge it lies on, or with three in a plane with it.
+
+    The latter are as if on an edge from the nearest of the three to itself.  A vertex on a line that goes on beyond
+    both ends, or to the boundary, is one of a ruled surface, and is left alone.
+    """
+    t = mesh.topology
+    degree = np.diff(t.corner_offsets)
+    few = np.flatnonzero((degree == 3) | (degree == 4))
+    few = few[t.vertex_is_manifold[few] & ~t.vertex_is_boundary[few]]
+    found: list[AmidEdge] = []
+    for n, places in ((3, _in_triangles), (4, _on_edges)):
+        rows = few[degree[few] == n]
+        if len(rows):
+            around = t.neighbours[t.neighbour_offsets[rows][:, None] + np.arange(n)]
+            found += places(mesh, rows, around)
+    return found
+
+
+def _is_curved(mesh: TriangleMesh, around: Indices) -> NDArray[np.bool_]:
+    """The surface bends at all of the neighbours; at the boundary nobody can tell."""
+    curved = (np.abs(mesh.vertex_angle_defects[around]) > CURVED) & ~mesh.topology.vertex_is_boundary[around]
+    return np.all(curved, axis=1)
+
+
+def _in_triangles(mesh: TriangleMesh, vertices: Indices, around: Indices) -> list[AmidEdge]:
+    V = mesh.vertices
+    p, q, r = np.moveaxis(V[around] - V[vertices][:, None], 1, 0)
+    normals = np.cross(q - p, r - p)
+    areas = np.linalg.norm(normals, axis=1)
+    longest = np.sqrt(np.max([np.sum(x * x, axis=1) for x in (q - p, r - q, p - r)], axis=0))
+    with np.errstate(all="ignore"):
+        heights = np.abs(np.sum(p * normals, axis=1)) / areas
+    inside = np.all([np.sum(np.cross(a, b) * normals, axis=1) > 0.0 for a, b in ((p, q), (q, r), (r, p))], axis=0)
+    flat = np.flatnonzero(inside & (heights <= IN_PLANE * longest))
+    if not len(flat):
+        return []
+    flat = flat[_is_curved(mesh, around[flat])]
+    near = np.argmin([np.sum(x[flat] ** 2, axis=1) for x in (p, q, r)], axis=0)
+    ends = around[flat, near].tolist()
+    return [AmidEdge(v, end, end) for v, end in zip(vertices[flat].tolist(), ends, strict=True)]
+
+
+def _on_edges(mesh: TriangleMesh, vertices: Indices, around: Indices) -> list[AmidEdge]:
+    V, found = mesh.vertices, list[AmidEdge]()
+    spokes = np.linalg.norm(V[around] - V[vertices][:, None], axis=2)
+    for i, j in ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)):
+        whole = np.linalg.norm(V[around[:, i]] - V[around[:, j]], axis=1)
+        rows = np.flatnonzero(spokes[:, i] + spokes[:, j] - whole <= ON_EDGE * whole)
+        if len(rows):
+            rows = rows[_is_curved(mesh, around[rows])]
+        places = np.stack([vertices[rows], around[rows, i], around[rows, j]], axis=1).tolist()
+        found += [AmidEdge(*place) for place in places if not _goes_on(mesh, *place)]
+    return list({place.vertex: place for place in found}.values())
+
+
+def _goes_on(mesh: TriangleMesh, vertex: int, a: int, b: int) -> bool:
+    """The line from the vertex to both ends of its edge goes on beyond them, along edges, or ends at the boundary."""
+    ends = mesh.topology.vertex_is_boundary
+    return all(bool(ends[end]) or _has_opposite(mesh, end, vertex) for end in (a, b))
+
+
+def _has_opposite(mesh: TriangleMesh, vertex: int, other: int) -> bool:
+    t, V = mesh.topology, mesh.vertices
+    spokes = V[t.neighbours[t.neighbour_offsets[vertex] : t.neighbour_offsets[vertex + 1]]] - V[vertex]
+    back = V[vertex] - V[other]
+    across = np.linalg.norm(np.cross(spokes, back), axis=1)
+    return bool(np.any(across <= OPPOSITE * (spokes @ back)))
