@@ -17,6 +17,8 @@ from rinow.comparison.engine import RELATION, Engine, worst_of
 from rinow.comparison.interval import Interval
 from rinow.comparison.subsets import bound_by_subsets
 from rinow.comparison.surfaces import Sample, eccentricity_gap, samples_of
+from rinow.comparison.whole_eccentricities import Eccentricities, gap_of_eccentricities
+from rinow.comparison.whole_meshes import whole_relation
 from rinow.errors import InvalidInputError
 from rinow.metric_space import MetricSpace
 
@@ -25,8 +27,11 @@ __all__ = ["GromovHausdorff", "MetricSpace", "gromov_hausdorff"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-SHARE_OF_NETS, SHARE_OF_MESHES = 0.3, 0.85
-"""Share of the time for the comparison of nets; the rest goes into maps of subsets.  On meshes these gain little."""
+SHARE_OF_NETS, SHARE_OF_MESHES = 0.3, 0.2
+"""Share of the time for the comparison of nets.  The rest goes into maps of subsets, and for meshes into these:"""
+
+SHARE_OF_SUBSETS, SHARE_OF_ECCENTRICITIES = 0.05, 0.2
+"""Shares of the time then left for maps of subsets and eccentricities; the rest goes into a relation of all vertices."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -172,8 +177,16 @@ def gromov_hausdorff(
     if sum(radii) > 0.0:
         diameters = [sample.diameter_bound + 2.0 * r for sample, r in zip(samples, beyond, strict=True)]
         upper, exact = min(upper + max(radii), 0.5 * max(diameters)), False
-        proved = _proved_beyond(samples, proved, beyond, clock, verify=verify)
+        share = SHARE_OF_SUBSETS if sum(beyond) == 0.0 else 1.0
+        proved = _proved_beyond(samples, proved, beyond, clock.part(share * clock.left), verify=verify)
     pairs = np.stack([samples[0].indices[interval.pairs[:, 0]], samples[1].indices[interval.pairs[:, 1]]], axis=1)
+    if samples[0].metric and samples[1].metric and radii != beyond:
+        proved = _proved_by_eccentricities(samples, proved, beyond, clock.part(SHARE_OF_ECCENTRICITIES * clock.left))
+        whole = whole_relation(*samples, interval.pairs, clock)
+        if whole is not None:
+            whole.improve(clock)
+            if 0.5 * whole.upper + max(beyond) < upper:
+                upper, radii, pairs = 0.5 * whole.upper + max(beyond), beyond, whole.pairs(*samples)
     return GromovHausdorff(proved.lower, upper, exact, pairs, proved.by, radii, proved.proof_checked)
 
 
@@ -207,6 +220,15 @@ def _proved_beyond(
     )
     twice, proof_checked = bound_by_subsets(X, Y, radii, 2.0 * best.lower, clock, verify=verify)
     return Proved(0.5 * twice, "maps of subsets", proof_checked) if 0.5 * twice > best.lower else best
+
+
+def _proved_by_eccentricities(
+    samples: tuple[Sample, Sample], proved: Proved, beyond: tuple[float, float], clock: Clock
+) -> Proved:
+    """The better one of a lower bound and that by the eccentricities of all vertices of two meshes."""
+    sides = [Eccentricities.of(sample, sample.metric) for sample in samples if sample.metric]
+    gap = gap_of_eccentricities(*sides, 2.0 * proved.lower, clock, beyond)
+    return Proved(0.5 * gap, "eccentricities") if 0.5 * gap > proved.lower else proved
 
 
 def _compare(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
