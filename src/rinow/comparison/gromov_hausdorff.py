@@ -31,7 +31,7 @@ SHARE_OF_NETS, SHARE_OF_MESHES = 0.3, 0.2
 """Share of the time for the comparison of nets.  The rest goes into maps of subsets, and for meshes into these:"""
 
 SHARE_OF_SUBSETS, SHARE_OF_ECCENTRICITIES = 0.05, 0.2
-"""Shares of the time then left for maps of subsets and eccentricities; the rest goes into a relation of all vertices."""
+"""Shares of the time then left for maps of subsets and eccentricities; the rest is for a relation of all vertices."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -47,7 +47,8 @@ class GromovHausdorff(OneLine):
     correspondence : (k, 2) ndarray of int
         Pairs (x, y) that cover both spaces; half their distortion is `upper`.  Where nets are compared they cover the
         nets, and `upper` is half their distortion plus the larger covering radius, or half the larger diameter if that
-        is less.
+        is less.  Of meshes they cover all vertices where that leads to less: `upper` is then at least half their
+        distortion, which is bounded by the rows of some of them.
     lower_bound_by : str
         What proved `lower`: "non-negativity", "diameter", "eccentricities", "packing", "single linkage", "sorted
         distances", "arc consistency", "search", "satisfiability", "persistence" or "maps of subsets".
@@ -138,6 +139,11 @@ def gromov_hausdorff(
     subsets").  Of spaces of thousands of points, a dozen points and those farthest from them and from their partners
     are mapped into all of the other space where the lower bound stays below half the upper one; this has the same name.
 
+    Relations of all vertices of large meshes are too large to be measured.  Let δ(i) be the largest
+    :math:`|d(x_i, x_j) - d(y_i, y_j)|` over the pairs j of a relation, which the distances from x_i and from y_i alone
+    tell.  By the triangle inequality :math:`\delta(j) \le \delta(i) + d(x_i, x_j) + d(y_i, y_j)`; the least right side
+    over some pairs i bounds δ(j), and the largest of these bounds the distortion.
+
     An interval that stays open is raised by holes that one space has and the other one lacks ("persistence") if the
     extra of this name is installed (GUDHI) and a second is left.
 
@@ -226,8 +232,8 @@ def _proved_by_eccentricities(
     samples: tuple[Sample, Sample], proved: Proved, beyond: tuple[float, float], clock: Clock
 ) -> Proved:
     """The better one of a lower bound and that by the eccentricities of all vertices of two meshes."""
-    sides = [Eccentricities.of(sample, sample.metric) for sample in samples if sample.metric]
-    gap = gap_of_eccentricities(*sides, 2.0 * proved.lower, clock, beyond)
+    X, Y = (Eccentricities.of(sample, metric) for sample in samples if (metric := sample.metric) is not None)
+    gap = gap_of_eccentricities(X, Y, 2.0 * proved.lower, clock, beyond)
     return Proved(0.5 * gap, "eccentricities") if 0.5 * gap > proved.lower else proved
 
 

@@ -78,7 +78,7 @@ def gap_of_eccentricities(
 ) -> float:
     """Lower bound of the distortion of spaces within some radii of the meshes; looked for above `least` only."""
     best, rounding = 0.0, tolerances.COMPARISON * float(max(X.known.max(), Y.known.max()))
-    sides = (X, Y, beyond[1]), (Y, X, beyond[0])
+    sides = (X, Y, beyond[0]), (Y, X, beyond[1])
     while True:
         holes = [(*A.hole(B), A, own) for A, B, own in sides]
         e, apart, A, r = max(holes, key=lambda hole: hole[1])

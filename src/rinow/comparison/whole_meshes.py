@@ -29,7 +29,7 @@ Singles = NDArray[np.float32]
 Indices = NDArray[np.intp]
 
 NET, LANDMARKS = 160, 96
-"""Farthest points of X whose images are improved, and random ones of them whose distances tell the image of a vertex."""
+"""Farthest points of X whose images are improved, and random ones of them whose distances tell images of vertices."""
 
 ROUNDS, SWEEPS = 6, 4
 """Times that the images of the net are found anew, and that all vertices are run through to find theirs."""
@@ -47,7 +47,7 @@ WIDTH = 4.0
 """Radius of the ball from which a group is chosen, in the distances that its points shall have."""
 
 LOOKED_AT, SHARE_OF_COVER = 6e7, 0.5
-"""Vertices times pairs that are looked at in a second until that is known, and share of the time left that is planned."""
+"""Vertices times pairs that are looked at in a second, until that is known, and share of the time that is planned."""
 
 LEVELS, FALL = 40, 0.85
 """Levels below the bound that may be aimed at, and the excess over the expected distortion of each of the last one."""

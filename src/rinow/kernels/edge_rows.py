@@ -37,7 +37,7 @@ def _lower(distances, u, v, length):
 
 @lean
 def _advance(step, keys, near, far, n_far, end):
-    """Move the nodes up to a step beyond the least key from the far list to the near one; limit, and lengths of both."""
+    """Move nodes up to a step beyond the least key from the far list to the near one; limit, and lengths of both."""
     limit, left = np.inf, 0
     for k in range(n_far):
         limit = min(limit, keys[far[k]])
