@@ -193,6 +193,10 @@ def gromov_hausdorff(
             whole.improve(clock)
             if 0.5 * whole.upper + max(beyond) < upper:
                 upper, radii, pairs = 0.5 * whole.upper + max(beyond), beyond, whole.pairs(*samples)
+        if radii != beyond and not interval.closed and not clock.over:  # what the whole relation left
+            _compare(samples[0].distances, samples[1].distances, interval, clock)
+            upper = min(upper, 0.5 * interval.upper + max(radii))
+            pairs = np.stack([sample.indices[k] for sample, k in zip(samples, interval.pairs.T, strict=True)], axis=1)
     return GromovHausdorff(proved.lower, upper, exact, pairs, proved.by, radii, proved.proof_checked)
 
 

@@ -34,7 +34,7 @@ LARGEST_NET, NET_BYTES = 580, 1 << 29
 """Points of a net, and memory for their distances to all vertices."""
 
 
-SHARES, SMALL_NET, SHARES_OF_SMALL = (0.06, 0.065), 100, (0.4, 0.65)
+SHARES, SMALL_NET, SHARES_OF_SMALL = (0.1, 0.11), 100, (0.4, 0.65)
 """Shares of the time left that the first and the second net take, and while they have fewer points than that: these are
 compared in no time."""
 SHARE_OF_ALL = 0.08
