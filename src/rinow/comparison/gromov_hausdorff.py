@@ -175,7 +175,9 @@ def gromov_hausdorff(
     beyond = _checked_radii(covering_radii)
     samples = samples_of(X, Y, clock)
     radii = samples[0].covering_radius + beyond[0], samples[1].covering_radius + beyond[1]
-    share = 1.0 if sum(radii) == 0.0 else SHARE_OF_NETS if sum(beyond) > 0.0 else SHARE_OF_MESHES
+    meshes = all(sample.metric is not None for sample in samples)
+    of_nets = SHARE_OF_NETS if sum(beyond) > 0.0 else SHARE_OF_MESHES if meshes else 0.85
+    share = 1.0 if sum(radii) == 0.0 else of_nets
     interval = first_interval(samples[0].distances, samples[1].distances, rtol, verify=verify)
     _compare(samples[0].distances, samples[1].distances, interval, clock.part(share * clock.left))
     upper, exact = 0.5 * interval.upper, interval.exact
@@ -183,7 +185,7 @@ def gromov_hausdorff(
     if sum(radii) > 0.0:
         diameters = [sample.diameter_bound + 2.0 * r for sample, r in zip(samples, beyond, strict=True)]
         upper, exact = min(upper + max(radii), 0.5 * max(diameters)), False
-        share = SHARE_OF_SUBSETS if sum(beyond) == 0.0 else 1.0
+        share = SHARE_OF_SUBSETS if meshes and sum(beyond) == 0.0 else 1.0
         proved = _proved_beyond(samples, proved, beyond, clock.part(share * clock.left), verify=verify)
     pairs = np.stack([samples[0].indices[interval.pairs[:, 0]], samples[1].indices[interval.pairs[:, 1]]], axis=1)
     if samples[0].metric and samples[1].metric and radii != beyond:
