@@ -17,6 +17,8 @@ from rinow.comparison.engine import RELATION, Engine, worst_of
 from rinow.comparison.interval import Interval
 from rinow.comparison.subsets import bound_by_subsets
 from rinow.comparison.surfaces import Sample, eccentricity_gap, samples_of
+from rinow.comparison.whole_eccentricities import Eccentricities, gap_of_eccentricities
+from rinow.comparison.whole_meshes import whole_relation
 from rinow.errors import InvalidInputError
 from rinow.metric_space import MetricSpace
 
@@ -25,8 +27,11 @@ __all__ = ["GromovHausdorff", "MetricSpace", "gromov_hausdorff"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-SHARE_OF_NETS, SHARE_OF_MESHES = 0.3, 0.85
-"""Share of the time for the comparison of nets; the rest goes into maps of subsets.  On meshes these gain little."""
+SHARE_OF_NETS, SHARE_OF_MESHES = 0.3, 0.2
+"""Share of the time for the comparison of nets.  The rest goes into maps of subsets, and for meshes into these:"""
+
+SHARE_OF_SUBSETS, SHARE_OF_ECCENTRICITIES = 0.05, 0.2
+"""Shares of the time then left for maps of subsets and eccentricities; the rest is for a relation of all vertices."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -42,7 +47,8 @@ class GromovHausdorff(OneLine):
     correspondence : (k, 2) ndarray of int
         Pairs (x, y) that cover both spaces; half their distortion is `upper`.  Where nets are compared they cover the
         nets, and `upper` is half their distortion plus the larger covering radius, or half the larger diameter if that
-        is less.
+        is less.  Of meshes they cover all vertices where that leads to less: `upper` is then at least half their
+        distortion, which is bounded by the rows of some of them.
     lower_bound_by : str
         What proved `lower`: "non-negativity", "diameter", "eccentricities", "packing", "single linkage", "sorted
         distances", "arc consistency", "search", "satisfiability", "persistence" or "maps of subsets".
@@ -133,6 +139,11 @@ def gromov_hausdorff(
     subsets").  Of spaces of thousands of points, a dozen points and those farthest from them and from their partners
     are mapped into all of the other space where the lower bound stays below half the upper one; this has the same name.
 
+    Relations of all vertices of large meshes are too large to be measured.  Let δ(i) be the largest
+    :math:`|d(x_i, x_j) - d(y_i, y_j)|` over the pairs j of a relation, which the distances from x_i and from y_i alone
+    tell.  By the triangle inequality :math:`\delta(j) \le \delta(i) + d(x_i, x_j) + d(y_i, y_j)`; the least right side
+    over some pairs i bounds δ(j), and the largest of these bounds the distortion.
+
     An interval that stays open is raised by holes that one space has and the other one lacks ("persistence") if the
     extra of this name is installed (GUDHI) and a second is left.
 
@@ -164,7 +175,9 @@ def gromov_hausdorff(
     beyond = _checked_radii(covering_radii)
     samples = samples_of(X, Y, clock)
     radii = samples[0].covering_radius + beyond[0], samples[1].covering_radius + beyond[1]
-    share = 1.0 if sum(radii) == 0.0 else SHARE_OF_NETS if sum(beyond) > 0.0 else SHARE_OF_MESHES
+    meshes = all(sample.metric is not None for sample in samples)
+    of_nets = SHARE_OF_NETS if sum(beyond) > 0.0 else SHARE_OF_MESHES if meshes else 0.85
+    share = 1.0 if sum(radii) == 0.0 else of_nets
     interval = first_interval(samples[0].distances, samples[1].distances, rtol, verify=verify)
     _compare(samples[0].distances, samples[1].distances, interval, clock.part(share * clock.left))
     upper, exact = 0.5 * interval.upper, interval.exact
@@ -172,8 +185,20 @@ def gromov_hausdorff(
     if sum(radii) > 0.0:
         diameters = [sample.diameter_bound + 2.0 * r for sample, r in zip(samples, beyond, strict=True)]
         upper, exact = min(upper + max(radii), 0.5 * max(diameters)), False
-        proved = _proved_beyond(samples, proved, beyond, clock, verify=verify)
+        share = SHARE_OF_SUBSETS if meshes and sum(beyond) == 0.0 else 1.0
+        proved = _proved_beyond(samples, proved, beyond, clock.part(share * clock.left), verify=verify)
     pairs = np.stack([samples[0].indices[interval.pairs[:, 0]], samples[1].indices[interval.pairs[:, 1]]], axis=1)
+    if samples[0].metric and samples[1].metric and radii != beyond:
+        proved = _proved_by_eccentricities(samples, proved, beyond, clock.part(SHARE_OF_ECCENTRICITIES * clock.left))
+        whole = whole_relation(*samples, interval.pairs, clock)
+        if whole is not None:
+            whole.improve(clock)
+            if 0.5 * whole.upper + max(beyond) < upper:
+                upper, radii, pairs = 0.5 * whole.upper + max(beyond), beyond, whole.pairs(*samples)
+        if radii != beyond and not interval.closed and not clock.over:  # what the whole relation left
+            _compare(samples[0].distances, samples[1].distances, interval, clock)
+            upper = min(upper, 0.5 * interval.upper + max(radii))
+            pairs = np.stack([sample.indices[k] for sample, k in zip(samples, interval.pairs.T, strict=True)], axis=1)
     return GromovHausdorff(proved.lower, upper, exact, pairs, proved.by, radii, proved.proof_checked)
 
 
@@ -207,6 +232,15 @@ def _proved_beyond(
     )
     twice, proof_checked = bound_by_subsets(X, Y, radii, 2.0 * best.lower, clock, verify=verify)
     return Proved(0.5 * twice, "maps of subsets", proof_checked) if 0.5 * twice > best.lower else best
+
+
+def _proved_by_eccentricities(
+    samples: tuple[Sample, Sample], proved: Proved, beyond: tuple[float, float], clock: Clock
+) -> Proved:
+    """The better one of a lower bound and that by the eccentricities of all vertices of two meshes."""
+    X, Y = (Eccentricities.of(sample, metric) for sample in samples if (metric := sample.metric) is not None)
+    gap = gap_of_eccentricities(X, Y, 2.0 * proved.lower, clock, beyond)
+    return Proved(0.5 * gap, "eccentricities") if 0.5 * gap > proved.lower else proved
 
 
 def _compare(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from rinow import tolerances
 from rinow.comparison.clock import Clock
+from rinow.comparison.edge_metric import EdgeMetric
 from rinow.errors import InvalidInputError, InvalidMeshError, NotAMetricError, naming
 from rinow.geodesics.distances import geodesic_space
 from rinow.geodesics.edge_graph import edge_graph
@@ -34,7 +34,7 @@ LARGEST_NET, NET_BYTES = 580, 1 << 29
 """Points of a net, and memory for their distances to all vertices."""
 
 
-SHARES, SMALL_NET, SHARES_OF_SMALL = (0.25, 0.33), 100, (0.4, 0.65)
+SHARES, SMALL_NET, SHARES_OF_SMALL = (0.1, 0.11), 100, (0.4, 0.65)
 """Shares of the time left that the first and the second net take, and while they have fewer points than that: these are
 compared in no time."""
 SHARE_OF_ALL = 0.08
@@ -56,12 +56,23 @@ class Sample:
         Distances between the chosen points.
     covering_radius : float
         Greatest distance of a point from the nearest chosen one; 0 if all were chosen.
+    vertices : (n,) ndarray of int
+        The points of the space as vertices of the mesh or points of the space.
+    metric : EdgeMetric or None
+        Where other rows of a mesh come from.
     """
 
     indices: Indices
     rows: Floats
     distances: Floats
     covering_radius: float
+    vertices: Indices
+    metric: EdgeMetric | None = None
+
+    @property
+    def positions(self) -> Indices:
+        """The chosen points among those of the space."""
+        return np.searchsorted(self.vertices, self.indices)
 
     @property
     def eccentricity_bounds(self) -> tuple[Floats, Floats]:
@@ -101,7 +112,7 @@ def sample_of(thing: Any, clock: Clock, clock_of_small: Clock, clock_of_all: Clo
     """
     if not is_mesh_like(thing):
         D = finite_distances(thing)
-        return Sample(np.arange(len(D)), D, D, 0.0)
+        return Sample(np.arange(len(D)), D, D, 0.0, np.arange(len(D)))
     return _net(*_connected_edges(as_mesh(thing)), clock, clock_of_small, clock_of_all)
 
 
@@ -185,10 +196,10 @@ def _net(graph: csr_array, vertices: Indices, clock: Clock, clock_of_small: Cloc
     """Farthest points in turn, with their distances to all vertices: of a small mesh all, in their order."""
     n = len(vertices)
     size = n if n <= ALL_VERTICES else max(2, min(LARGEST_NET, NET_BYTES // (8 * n)))
-    rows, chosen = np.empty((size, n)), [0]
+    rows, chosen, metric = np.empty((size, n)), [0], EdgeMetric(graph)
     nearest = np.full(n, np.inf)
     for k in range(size):
-        rows[k] = dijkstra(graph, indices=chosen[k])
+        rows[k] = metric.row(chosen[k])
         if k == 0 and not rows[0].max() < LARGEST_DISTANCE:
             raise InvalidMeshError(f"mesh has distances of {rows[0].max():.3g}, and some are no number; scale it.")
         np.minimum(nearest, rows[k], out=nearest)
@@ -205,5 +216,5 @@ def _net(graph: csr_array, vertices: Indices, clock: Clock, clock_of_small: Cloc
     if len(chosen) == n:
         places = np.argsort(chosen)
         distances = distances[np.ix_(places, places)]
-        return Sample(vertices, distances, distances, 0.0)
-    return Sample(vertices[chosen], rows[: len(chosen)], distances, float(nearest.max()))
+        return Sample(vertices, distances, distances, 0.0, vertices, metric)
+    return Sample(vertices[chosen], rows[: len(chosen)], distances, float(nearest.max()), vertices, metric)
