@@ -70,12 +70,18 @@ class Ladder(NamedTuple):
     def frames(
         self, sheet: balls.Sheet, centres: Ints, frames: Floats, choice: Choice, tasks: Tasks, is_level: Bools
     ) -> Floats:
-        """Frames of the tori that osculate the fits of a choice of radius and order, or of mean planes."""
+        """Frames of the tori that osculate the fits of a choice of radius and order, or of mean planes.
+
+        Where the given frame is too steep over the mean plane for any fit, its tangent plane stays.
+        """
         rows, noise = np.zeros(len(centres) + 1, np.int64), np.zeros(len(centres))
         radius = np.clip(choice.radius + WIDER * is_level, 0, len(self.reaches) - 1).astype(np.int32)
         order = np.where(is_level, MEAN_ORDER, choice.order).astype(np.int32)
         fitting = self.fitting(patch_driver.FRAMES, sheet, centres, frames, radius, radius, order, rows, noise)
         found = fit_frames(fitting, tasks, 0.1)
+        cosines = np.sum(found[:, :3] * frames[:, :3], axis=1)
+        is_steep = is_level & (cosines**2 * (1.0 + patch_fits.STEEP) < 1.0)
+        found[is_steep] = frames[is_steep]
         found[is_level, 9:] = 0.0
         return found
 

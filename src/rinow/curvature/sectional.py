@@ -40,7 +40,7 @@ QUARTIC = 3
 """Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
 PASSES = 2
 """Averages of squared differences over the centres around."""
-EDGE_CALIBRATION = 2.0
+EDGE_CALIBRATION = 1.8
 """`Quality.calibration` at a boundary, where patches of any quality choose their order and radius by themselves."""
 OF_GAUSSIAN = 0.8
 """Squared error of K over that of K and H together if k1 and k2 err alike: k2 dk1 + k1 dk2 has four times the variance
@@ -63,7 +63,7 @@ class Search(NamedTuple):
     around: float
 
 
-NARROW = 3
+NARROW = 5
 """Another time only so many radii more and less than that chosen are looked at."""
 INSIDE, BESIDE = Search(1, 2.2), Search(2, 4.5)
 """Centres inside and beside a boundary; there they lie in a strip and their first frames are poor."""
@@ -131,7 +131,8 @@ def sectional(
     at all points of a patch around the centre.  All orders 2 to 8 come from one Cholesky factorisation of each ball,
     whose leading blocks are the lower orders.  Of each order d and radius the expected squared error is the variance,
     from the residuals, plus the squared bias, the mean over the patches around of
-    :math:`(K_d - K_{d+2})^2` less the variance of this difference, and to both those of H are added, times the squared
+    :math:`(K_d - K_{d+2})^2` (of :math:`(K_d - K_{d+1})^2` where a boundary leaves one side of the ball) less the
+    variance of this difference, and to both those of H are added, times the squared
     curvedness: both curvatures come from one fit.  The least sum is taken, patches are blended, and K is shrunk towards
     0 as far as its mean square does not exceed its mean error (James and Stein).  Where all angles within three rings
     sum to 2π the surface is isometric to the plane and K is 0.
