@@ -16,9 +16,9 @@ Indices = NDArray[np.intp]
 CURVED = 1e-7
 """Angle defect of all neighbours from which on the surface around is none that can be developed: facets and cylinders
 are full of such vertices, and no harm comes of them."""
-IN_PLANE = 1e-5
-"""Height of a vertex over the triangle of its three neighbours, over the longest side, where it is in it: that of a
-vertex on an edge by `ON_EDGE`."""
+IN_PLANE = 1e-8
+"""Height of a vertex over the triangle of its three neighbours, over the longest side, where it is in it: rounding.
+Where a surface bends to both sides that of others is 0 as well by chance, but not so exactly."""
 OPPOSITE = 1e-4
 """Angle in radians by which an edge may miss the continuation of another one."""
 
