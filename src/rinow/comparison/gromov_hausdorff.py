@@ -27,8 +27,9 @@ __all__ = ["GromovHausdorff", "MetricSpace", "gromov_hausdorff"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-SHARE_OF_NETS, SHARE_OF_MESHES = 0.3, 0.2
-"""Share of the time for the comparison of nets.  The rest goes into maps of subsets, and for meshes into these:"""
+SHARE_OF_NETS, SHARE_OF_MESHES, SHARE_BESIDE_A_MATRIX = 0.3, 0.2, 0.85
+"""Share of the time for the comparison of nets: of spaces, of two meshes, and of a mesh with a matrix.  The rest goes
+into maps of subsets, and for two meshes into these:"""
 
 SHARE_OF_SUBSETS, SHARE_OF_ECCENTRICITIES = 0.05, 0.2
 """Shares of the time then left for maps of subsets and eccentricities; the rest is for a relation of all vertices."""
@@ -176,7 +177,7 @@ def gromov_hausdorff(
     samples = samples_of(X, Y, clock)
     radii = samples[0].covering_radius + beyond[0], samples[1].covering_radius + beyond[1]
     meshes = all(sample.metric is not None for sample in samples)
-    of_nets = SHARE_OF_NETS if sum(beyond) > 0.0 else SHARE_OF_MESHES if meshes else 0.85
+    of_nets = SHARE_OF_NETS if sum(beyond) > 0.0 else SHARE_OF_MESHES if meshes else SHARE_BESIDE_A_MATRIX
     share = 1.0 if sum(radii) == 0.0 else of_nets
     interval = first_interval(samples[0].distances, samples[1].distances, rtol, verify=verify)
     _compare(samples[0].distances, samples[1].distances, interval, clock.part(share * clock.left))
