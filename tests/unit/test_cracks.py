@@ -248,3 +248,28 @@ def test_a_face_without_area_at_the_rim_is_left_out():
     np.testing.assert_array_equal(with_cap.gaussian, without.gaussian)
     np.testing.assert_array_equal(with_cap.status, without.status)
     assert with_cap.status[t] == VertexStatus.BOUNDARY
+
+
+def rod(n=12):
+    """A prism whose upper rim has a vertex amid each edge, as a coarse rim of a cylinder, with caps fanned from corners."""
+    turn = 2 * np.pi * np.arange(n) / n
+    ring = np.column_stack([np.cos(turn), np.sin(turn)])
+    middles = 0.5 * (ring + np.roll(ring, -1, axis=0))
+    V = np.vstack(
+        [np.column_stack([points, np.full(n, z)]) for points, z in ((ring, 0.0), (ring, 2.0), (middles, 2.0))]
+    )
+    F = []
+    for i in range(n):
+        j = (i + 1) % n
+        a, b, c, d, m = i, j, n + i, n + j, 2 * n + i
+        F += [[a, b, d], [a, d, m], [a, m, c]]
+        F += [[0, j, i]] * (0 < i < n - 1)
+        F += [[n, c, m], [n, m, d]] if 0 < i < n - 1 else [[n, m, d]] if i == 0 else [[n, c, m]]
+    return TriangleMesh(V, np.array(F))
+
+
+def test_vertices_of_rims_are_kept():
+    # They are all that is known of a cylinder: without them one of a CAD part had an eighth of its mean curvature.
+    mesh = rod()
+    assert mesh.euler_characteristic == 2
+    assert redundant_vertices(mesh) == []

@@ -19,6 +19,9 @@ are full of such vertices, and no harm comes of them."""
 IN_PLANE = 1e-8
 """Height of a vertex over the triangle of its three neighbours, over the longest side, where it is in it: rounding.
 Where a surface bends to both sides that of others is 0 as well by chance, but not so exactly."""
+CREASED = 0.5
+"""Angle in radians between two faces from which on they meet at a crease: rims of cylinders are full of such vertices,
+too, where all that is known of the cylinder lies."""
 OPPOSITE = 1e-4
 """Angle in radians by which an edge may miss the continuation of another one."""
 
@@ -43,9 +46,30 @@ def redundant_vertices(mesh: TriangleMesh) -> list[AmidEdge]:
 
 
 def _is_curved(mesh: TriangleMesh, around: Indices) -> NDArray[np.bool_]:
-    """The surface bends at all of the neighbours; at the boundary nobody can tell."""
+    """The surface bends at all of the neighbours, without a crease; at the boundary nobody can tell."""
     curved = (np.abs(mesh.vertex_angle_defects[around]) > CURVED) & ~mesh.topology.vertex_is_boundary[around]
-    return np.all(curved, axis=1)
+    bends = np.all(curved, axis=1)
+    for row in np.flatnonzero(bends):
+        bends[row] = not any(_has_crease(mesh, v) for v in around[row])
+    return bends
+
+
+def _has_crease(mesh: TriangleMesh, vertex: int) -> bool:
+    """Two faces that meet at an edge of those around a vertex differ by more than `CREASED`."""
+    t = mesh.topology
+    faces = t.vertex_corners[t.corner_offsets[vertex] : t.corner_offsets[vertex + 1]] // 3
+    beyond = t.partners[3 * faces[:, None] + np.arange(3)] // 3
+    normals, others = _normals(mesh, faces), _normals(mesh, beyond)
+    cosines = np.sum(normals[:, None] * others, axis=2)
+    return bool((cosines[beyond >= 0] < np.cos(CREASED)).any())
+
+
+def _normals(mesh: TriangleMesh, faces: Indices) -> Floats:
+    """(..., 3): unit normals of some faces; 0 without an area."""
+    p, q, r = np.moveaxis(mesh.vertices[mesh.faces[faces]], -2, 0)
+    normals = np.cross(q - p, r - p)
+    sizes = np.linalg.norm(normals, axis=-1, keepdims=True)
+    return np.divide(normals, sizes, out=np.zeros_like(normals), where=sizes > 0.0)
 
 
 def _in_triangles(mesh: TriangleMesh, vertices: Indices, around: Indices) -> list[AmidEdge]:
