@@ -41,7 +41,8 @@ class EdgeMetric:
         g = csr_array(graph[self.order][:, self.order])
         g.sort_indices()
         self.graph = g.indptr.astype(np.int32), g.indices.astype(np.int32), g.data.astype(np.float64)
-        self.step = STEP * float(g.data.mean()) if len(g.data) else 0.0
+        longest = float(g.data.max(initial=0.0))
+        self.step = STEP * longest * float((g.data / longest).mean()) if longest > 0.0 else 0.0  # of any lengths
         n = len(self)
         self._work = np.empty(n + 1, np.int32), np.empty(n, np.int32), np.zeros(n, np.bool_)
 
