@@ -251,7 +251,7 @@ def test_a_face_without_area_at_the_rim_is_left_out():
 
 
 def rod(n=12):
-    """A prism whose upper rim has a vertex amid each edge, as CAD systems write cylinders, with caps fanned from corners."""
+    """A prism with a vertex amid each edge of its upper rim, and caps fanned from corners as CAD systems do."""
     turn = 2 * np.pi * np.arange(n) / n
     ring = np.column_stack([np.cos(turn), np.sin(turn)])
     middles = 0.5 * (ring + np.roll(ring, -1, axis=0))
