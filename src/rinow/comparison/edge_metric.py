@@ -41,8 +41,9 @@ class EdgeMetric:
         g = csr_array(graph[self.order][:, self.order])
         g.sort_indices()
         self.graph = g.indptr.astype(np.int32), g.indices.astype(np.int32), g.data.astype(np.float64)
-        longest = float(g.data.max(initial=0.0))
-        self.step = STEP * longest * float((g.data / longest).mean()) if longest > 0.0 else 0.0  # of any lengths
+        lengths = self.graph[2]
+        longest = float(lengths.max(initial=0.0))
+        self.step = STEP * longest * float((lengths / longest).mean()) if longest > 0.0 else 0.0  # sums may overflow
         n = len(self)
         self._work = np.empty(n + 1, np.int32), np.empty(n, np.int32), np.zeros(n, np.bool_)
 
