@@ -58,9 +58,12 @@ class PolyhedralSurface(OneLine):
     @cached_property
     def corner_angles(self) -> Floats:
         """(n_faces, 3): Euclidean angle at each corner, in [0, pi]; the three sum to pi."""
+        return read_only(self._face_angles())
+
+    def _face_angles(self) -> Floats:
         angles = np.empty((self.n_faces, 3))
         triangles.face_angles(self._safe_lengths[0], angles)
-        return read_only(angles)
+        return angles
 
     @cached_property
     def _scaled_areas(self) -> Floats:
@@ -107,7 +110,10 @@ class PolyhedralSurface(OneLine):
         """
         t = self.topology
         angles = np.empty(self.n_vertices)
-        triangles.vertex_sums_of_corners(self.corner_angles, t.corner_offsets, t.vertex_corners, angles)
+        at_corners = self.__dict__.get("corner_angles", None)
+        if at_corners is None:
+            at_corners = self._face_angles()  # not kept: they are three times as many as the faces
+        triangles.vertex_sums_of_corners(at_corners, t.corner_offsets, t.vertex_corners, angles)
         defects = 2.0 * np.pi - angles
         # Edges minus faces at a vertex; only boundary and non-manifold edges make it differ from 0.
         irregular = np.flatnonzero(t.vertex_is_boundary | t.vertex_is_on_nonmanifold_edge)
