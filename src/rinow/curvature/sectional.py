@@ -132,10 +132,10 @@ def sectional(
     whose leading blocks are the lower orders.  Of each order d and radius the expected squared error is the variance,
     from the residuals, plus the squared bias, the mean over the patches around of
     :math:`(K_d - K_{d+2})^2` (of :math:`(K_d - K_{d+1})^2` where a boundary leaves one side of the ball) less the
-    variance of this difference, and to both those of H are added, times the squared
-    curvedness: both curvatures come from one fit.  The least sum is taken, patches are blended, and K is shrunk towards
-    0 as far as its mean square does not exceed its mean error (James and Stein).  Where all angles within three rings
-    sum to 2π the surface is isometric to the plane and K is 0.
+    variance of this difference, and to both those of H are added, times the squared curvedness: both curvatures come
+    from one fit.  The least sum is taken, patches are blended, and K is shrunk towards 0 as far as its mean square does
+    not exceed its mean error (James and Stein).  Where all angles within three rings sum to 2π the surface is isometric
+    to the plane and K is 0.
 
     See Also
     --------
