@@ -68,7 +68,7 @@ def curvature(
         How to compute the curvature, for meshes; auto needs no setting.  sectional and lifted use positions; intrinsic,
         wald, robinson and angle_defect use edge lengths only and give the field gaussian only.
     quality
-        fast is several times faster and less accurate; for meshes and the methods auto and sectional.
+        fast is about twice as fast and less accurate; for meshes and the methods auto and sectional.
     radius
         Scale in the unit of length of the file; by default each method chooses its own.
     distances

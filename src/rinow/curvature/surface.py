@@ -133,8 +133,8 @@ def surface_curvature(
         "sectional" and "intrinsic" at each vertex by their expected errors; of a mesh without positions it is
         "intrinsic".  Order and scale are chosen at each place from the data in all of these three.
     quality : {"best", "fast"}, optional
-        "fast" lets a sample of the vertices decide about order and scale around it, with fewer patches, and is
-        several times faster; for "sectional" and "auto".
+        "fast" lets a sample of the vertices decide about order and scale around it, with fewer patches; it is about
+        twice as fast and less accurate.  For "sectional" and "auto".
     radius : float, optional
         Radius of all balls of "sectional" and "auto", of the averages of "intrinsic", or of the stars of "wald" and
         "robinson", positive, in the unit of length.  By default the data decide; "wald" takes the triangles around
