@@ -12,7 +12,10 @@ from matplotlib.figure import Figure
 Cell = dict[str, Any]
 HEAD = """# Curvature on analytic surfaces, beside other tools
 
-Written by `python benchmarks/bench_curvature.py`; do not edit.  Estimators: {versions}.  Machine: {machine}.
+Written by `python benchmarks/bench_curvature.py`; do not edit.
+
+Estimators: {versions}.
+Machine: {machine}.
 
 Error: root mean square over the vertices more than five rings from the border, weighted by area, relative to that of
 the exact curvature; geometric mean over sphere, ellipsoid, rounded cube, torus, saddle and waves (stretched: the last
