@@ -180,6 +180,10 @@ def test_components_isolated_and_nonfinite_vertices():
     assert np.diff(balls.indptr).tolist() == [9, 1, 0]
 
 
+def test_a_mesh_whose_only_face_takes_no_part():
+    np.testing.assert_equal(all_distances([[0, 0, 0], [1, 0, 0], [np.nan, 0, 0]], [[0, 1, 2]])[0], [0, np.inf, np.nan])
+
+
 def test_zero_area_caps_and_zero_length_edges():
     """A vertex on the diagonal of a square, and a corner given twice."""
     V = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.25, 0.25, 0]]

@@ -168,6 +168,14 @@ def test_angles_of_a_graph_are_0_or_pi():
     assert angle_at(path, 2, 0, 5) == pytest.approx(math.pi)
 
 
+def test_angles_with_points_that_no_path_leads_to_are_undefined():
+    V = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 0, 0], [6, 0, 0], [5, 1, 0]]
+    two, none = (V, [[0, 1, 2], [3, 4, 5]]), ([[0, 0, 0], [1, 0, 0], [np.nan, 0, 0]], [[0, 1, 2]])
+    assert np.isnan([angle_at(two, 0, 1, 3), angle_at(two, 0, 3, 1), angle_at(none, 0, 1, 2)]).all()
+    coordinates = polar_coordinates(two, 0, 1, 2)
+    assert np.isinf(coordinates[3:, 0]).all() and np.isnan(coordinates[3:, 1]).all()
+
+
 def test_frames_on_a_line_are_refused():
     for p2 in (2, 3):
         with pytest.raises(rinow.InvalidInputError, match="choose p2 off the line p p1"):

@@ -153,7 +153,8 @@ def polar_coordinates(space: Any, p: int, p1: int, p2: int, *, curvature: float 
 def _leg(rows: MetricRows, p: int, q: int) -> NDArray[np.intp]:
     """The points on the shortest path from p to q, from the nearest to q; those at distance 0 from p left out."""
     from_p, from_q = rows.row(p, math.inf), rows.row(q, math.inf)
-    between = from_p + from_q - from_p[q] <= tolerances.COMPARISON * from_p[q]
+    with np.errstate(invalid="ignore"):  # of points that no path leads to
+        between = from_p + from_q - from_p[q] <= tolerances.COMPARISON * from_p[q]
     between[q] = True
     points = np.flatnonzero(between & (from_p > 0))
     return points[np.argsort(from_p[points], kind="stable")]
@@ -196,5 +197,6 @@ def _limits(rows: MetricRows, p: int, leg: NDArray[np.intp], surface: SpaceForm)
     x = from_p[leg]
     pair = leg[[0, int(np.searchsorted(x, 2 * x[0]))]] if x[-1] >= 2 * x[0] else leg[:1]
     angles = [surface.angle(rows.row(int(i), math.inf), from_p[i], from_p) for i in pair]
-    limit = angles[0] + (angles[0] - angles[-1]) * x[0] / max(from_p[pair[-1]] - x[0], x[0])
+    with np.errstate(invalid="ignore"):
+        limit = angles[0] + (angles[0] - angles[-1]) * x[0] / max(from_p[pair[-1]] - x[0], x[0])
     return np.where(from_p > 0, np.clip(limit, 0.0, math.pi), np.nan)

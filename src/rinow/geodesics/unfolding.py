@@ -192,5 +192,5 @@ def _surface(topology: Topology, halfedges: Records, lengths: Floats, component_
     )
     area = 0.5 * float(np.sum(sides[::3] ** 2 * np.imag(halfedges["from_start"][:n:3])))
     n_used = max(int(topology.vertex_is_used.sum()), 1)
-    stride = _SHELL_WIDTH * max(math.sqrt(area / n_used), float(sides.mean()))
+    stride = _SHELL_WIDTH * max(math.sqrt(area / n_used), float(sides.mean()) if len(sides) else 1.0)
     return Surface(halfedges, corners, vertices, stride, not bool(topology.edge_is_manifold.all()))
