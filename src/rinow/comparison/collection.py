@@ -79,7 +79,9 @@ def distance_matrix(
         If `metric` is unknown, there is no space, one is not valid, the dimensions differ, the limit is negative or
         `tolerance` not positive, or `executor` or `progress` is none.
     NotAMetricError
-        If a matrix is not a metric.
+        If a matrix is not a metric, or for "gromov_hausdorff" the faces of a mesh are not connected.
+    InvalidMeshError
+        If a mesh has no face that takes part.
 
     See Also
     --------

@@ -105,20 +105,25 @@ def gromov_hausdorff(
     Returns
     -------
     result : GromovHausdorff
-        `lower` and `upper` in the unit of the distances, `exact` if they are equal, `correspondence` whose distortion
-        is ``2 * upper``, `lower_bound_by`, the name of what proved `lower`, `covering_radii` and `proof_checked`.
+        `lower` and `upper` in the unit of the distances, `exact` if they are equal, the `correspondence` that has
+        `upper` (its distortion is ``2 * upper``, less where only nets are known), `lower_bound_by`, the name of what
+        proved `lower`, `covering_radii` and `proof_checked`.
 
     Raises
     ------
     InvalidInputError
         If an argument is not a space, is empty, or a limit or covering radius is negative or nan.
     NotAMetricError
-        If a matrix is not a metric; build a `MetricSpace` with another `rtol` where that is wanted.  If the faces of a
-        mesh are not connected.
+        If a matrix is not a metric (build a `MetricSpace` with another `rtol` where rounding shall be forgiven), or the
+        faces of a mesh are not connected.
+    InvalidMeshError
+        If no face of a mesh takes part, or its distances are no numbers.
 
     See Also
     --------
     distortion : Recomputes the certificate of `upper`.
+    lipschitz_distance : By ratios in place of differences.
+    hausdorff_distance : Of sets in one space.
 
     Notes
     -----

@@ -87,6 +87,8 @@ def hausdorff_distance(A: Any, B: Any, *, space: Any = None, tolerance: float = 
         not positive.
     InvalidMeshError
         If a mesh has edge lengths only, or no face that takes part.
+    NotAMetricError
+        If `space` is a matrix that is not a metric.
 
     See Also
     --------

@@ -52,6 +52,8 @@ def angle_at(space: Any, p: int, q: int, r: int, *, curvature: float | None = No
     ------
     InvalidInputError
         If an index is out of range or `space` is no space.
+    NotAMetricError
+        If a matrix is not a metric, or a graph is not connected.
 
     See Also
     --------
@@ -110,7 +112,14 @@ def polar_coordinates(space: Any, p: int, p1: int, p2: int, *, curvature: float 
     Raises
     ------
     InvalidInputError
-        If an index is out of range, `space` is no space, or p, p1 and p2 lie on one shortest path.
+        If an index is out of range, `space` is no space, p, p1 and p2 lie on one shortest path, or none leads to p1 or
+        p2.
+    NotAMetricError
+        If a matrix is not a metric, or a graph is not connected.
+
+    See Also
+    --------
+    angle_at : One angle.
 
     Notes
     -----

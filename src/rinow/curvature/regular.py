@@ -45,7 +45,13 @@ def regular_radius(space: Any, point: int, *, rtol: float | None = None, max_poi
     Raises
     ------
     InvalidInputError
-        If `space` is none of these or `point` is out of range.
+        If `space` is none of these, `point` is out of range, or no path joins two points.
+    NotAMetricError
+        If a matrix is not a metric, or a graph is not connected.
+
+    See Also
+    --------
+    wald_curvature : The limit of embedding curvatures at a point.
 
     Notes
     -----

@@ -119,7 +119,10 @@ def rinow_curvature(
     Raises
     ------
     InvalidInputError
-        If `space_or_mesh` is none of these, an index is out of range, or `radius` comes without one point.
+        If `space_or_mesh` is none of these, an index is out of range, `radius` comes without one point, or no path
+        joins two points of the region.
+    NotAMetricError
+        If a matrix is not a metric, or a graph is not connected.
 
     See Also
     --------
@@ -204,8 +207,13 @@ def rinow_point_curvature(
 
     Raises
     ------
-    InvalidInputError
+    InvalidInputError, NotAMetricError
         As for `rinow_curvature`.
+
+    See Also
+    --------
+    rinow_curvature : The bounds of one region.
+    wald_curvature : The limit of embedding curvatures at a point.
 
     Notes
     -----

@@ -87,8 +87,8 @@ def singular_features(mesh: Any) -> SingularFeatures:
     ----------
     mesh : TriangleMesh, IntrinsicMesh, (V, F) pair, or object with vertices and faces
         The surface.  Edge lengths alone tell the cone points; creases and corners need positions.  A soup of
-        separate triangles is welded for the computation, seams are closed, and each face counts once; features are
-        named by the first vertex at each place.
+        separate triangles is welded for the computation, seams and cracks are closed, and each face counts once;
+        features are named by the first vertex at each place.
 
     Returns
     -------

@@ -25,7 +25,7 @@ class VertexStatus(IntEnum):
     DEGENERATE = 3
     """nan: every face around the vertex is degenerate."""
     NONMANIFOLD = 4
-    """The faces around are not one fan: the value of a sheet that goes on beyond, or of the largest; nan without one."""
+    """The faces around are not one fan: the value of the sheet that goes on beyond, or the largest; nan without one."""
     NONFINITE = 5
     """nan: the position is nan or inf."""
     UNRESOLVED = 6

@@ -105,6 +105,8 @@ def wald_curvature(
     ------
     InvalidInputError
         If `space` is none of these, `point` is out of range, `radius` is not positive or `kind` is unknown.
+    NotAMetricError
+        If a matrix is not a metric, or a graph is not connected.
 
     See Also
     --------

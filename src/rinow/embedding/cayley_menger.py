@@ -80,7 +80,7 @@ def cayley_menger_determinant(distances: ArrayLike) -> Floats:
 
 
 def simplex_volume(distances: ArrayLike) -> Floats:
-    """Volume of the Euclidean simplex with given edge lengths.
+    r"""Volume of the Euclidean simplex with given edge lengths.
 
     Parameters
     ----------
@@ -97,6 +97,14 @@ def simplex_volume(distances: ArrayLike) -> Floats:
     ------
     InvalidInputError
         If the shape or the type is wrong.
+
+    See Also
+    --------
+    cayley_menger_determinant, is_euclidean_simplex
+
+    Notes
+    -----
+    Its square is :math:`|D| / (2^{n-1} (n-1)!^2)` with the bordered determinant D, in range also where D is not.
 
     Examples
     --------
@@ -133,11 +141,19 @@ def circumradius(distances: ArrayLike) -> Floats:
     InvalidInputError
         If the shape or the type is wrong.
 
+    See Also
+    --------
+    is_cospherical : Whether one point more lies on the sphere.
+
     Notes
     -----
-    Its square is -Δ/(2D), with the determinant Δ of the squared distances and the bordered determinant D, in every
+    Its square is -Δ/(2D) [1]_, with the determinant Δ of the squared distances and the bordered determinant D, in every
     dimension; computed as :math:`L^2/4 + r^T h^{-1} r` without cancellation, where the longest edge L and the
     perpendicular inner products h fix the centre.
+
+    References
+    ----------
+    .. [1] E. Saucan, "Surface Triangulation - the Metric Approach", 2004, Theorem 7.1.
 
     Examples
     --------
@@ -174,7 +190,8 @@ def is_euclidean_simplex(distances: ArrayLike) -> Flags:
 
     Notes
     -----
-    For four points that satisfy the triangle inequality this is a positive `cayley_menger_determinant`.
+    For four points that satisfy the triangle inequality this is a positive `cayley_menger_determinant`.  Theorem 4.3 of
+    the paper prints the signs the other way round and leaves out the determinant of all four points.
 
     Examples
     --------

@@ -41,6 +41,8 @@ def midpoints(space: Any, x: int, y: int, *, epsilon: float) -> Indices:
     ------
     InvalidInputError
         If `x` or `y` is out of range, or `epsilon` is negative or nan.
+    NotAMetricError
+        If a matrix is not a metric.
 
     See Also
     --------
@@ -86,6 +88,12 @@ def length_defect(space: Any) -> float:
     ------
     InvalidInputError
         If a distance is infinite.
+    NotAMetricError
+        If a matrix is not a metric.
+
+    See Also
+    --------
+    midpoints : The ε-midpoints of two points.
 
     Notes
     -----
@@ -132,7 +140,7 @@ def intrinsic_metric(
     InvalidInputError
         If `indices` is empty or out of range, or `step` is not positive.
     NotAMetricError
-        If no chain joins two points and `infinite` is false.
+        If `space` is not a metric, or no chain joins two points and `infinite` is false.
 
     See Also
     --------

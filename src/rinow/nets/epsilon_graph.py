@@ -71,6 +71,8 @@ def epsilon_graph(space: Any, epsilon: float, *, indices: ArrayLike | None = Non
     ------
     InvalidInputError
         If `epsilon` is not positive, `indices` is empty or out of range, or a distance is infinite.
+    NotAMetricError
+        If a matrix is not a metric.
 
     See Also
     --------

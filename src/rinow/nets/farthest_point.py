@@ -84,6 +84,8 @@ def farthest_point_net(
     InvalidInputError
         If neither `size` nor `radius` is given, `size` is not between 1 and the number of points, `radius` is negative
         or nan, or `start` is out of range or not on the surface.
+    NotAMetricError
+        If a matrix is not a metric.
 
     See Also
     --------
@@ -184,6 +186,12 @@ def is_epsilon_net(space: Any, indices: ArrayLike, epsilon: float) -> bool:
     ------
     InvalidInputError
         If `indices` is empty or out of range, or `epsilon` is negative or nan.
+    NotAMetricError
+        If a matrix is not a metric.
+
+    See Also
+    --------
+    farthest_point_net : A net with its covering radius.
 
     Notes
     -----
