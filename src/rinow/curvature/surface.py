@@ -122,14 +122,14 @@ def surface_curvature(
     ----------
     mesh : TriangleMesh, IntrinsicMesh, (V, F) pair, or object with vertices and faces
         The surface.  Vertices may be unused or not finite, faces degenerate, misoriented or not manifold: `status`
-        tells where no value is defined.  Soups are welded for the computation, seams and cracks closed, sheets that meet
-        computed apart; vertices amid an edge or a face, or far beside the surface, get the values of a neighbour.
+        tells where no value is defined.  Soups are welded for the computation, seams and cracks closed, sheets that
+        meet computed apart; vertices amid an edge or a face, or far beside the surface, get the values of a neighbour.
     method : {"auto", "sectional", "lifted", "intrinsic", "wald", "robinson", "angle_defect"}, optional
         "sectional" fits polynomials of order 2 to 8 to the deviations from an osculating torus or a mean plane;
         "lifted" takes the angles of the star after its edges were lifted to arcs; "intrinsic" averages angle defects;
         "wald" is the embedding curvature of the star, or with `radius` of a star of geodesic distances; "robinson" is
         the mean of Robinson's formula over quadruples of geodesic distances with a linear triple; "angle_defect" is the
-        angle defect over a third of the area.  The last four need edge lengths only and give `gaussian` only.  "auto" blends
+        defect over a third of the area.  The last four need edge lengths only and give `gaussian` only.  "auto" blends
         "sectional" and "intrinsic" at each vertex by their expected errors, and takes small rings where folds are too
         narrow for both; of a mesh without positions it is "intrinsic".  "auto", "sectional" and "intrinsic" choose
         order and scale at each place from the data.
