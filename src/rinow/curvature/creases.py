@@ -181,7 +181,8 @@ def crease_lines_of(turnings: EdgeTurnings) -> CreaseLines:
         jumps, errors = turnings.jumps(candidates, ends)
         strong, weak = _evidence(theta, jumps, errors)
         is_crease = _linked(turnings, strong, weak, jumps, errors, is_last)
-        ends = np.where(is_crease | turnings.ends_facet, creases.END, np.minimum(ends, creases.END_STRAIGHT)).astype(np.int8)
+        certain = is_crease | turnings.ends_facet
+        ends = np.where(certain, creases.END, np.minimum(ends, creases.END_STRAIGHT)).astype(np.int8)
     degrees, turns = np.empty(mesh.n_vertices, np.intp), np.empty(mesh.n_vertices)
     t = mesh.topology
     crease_lines.junctions(
