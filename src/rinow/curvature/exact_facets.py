@@ -42,7 +42,7 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
 
     Notes
     -----
-    A small facet that turns the other way at its far side is a step.  Surfaces of voxels consist of steps, whose treads
+    The smaller facet beside an edge is a step if it turns the other way at its far side.  Surfaces of voxels consist of steps, whose treads
     are flat facets of a surface that is none.
     """
     other = mesh.topology.partners[halfedges]
@@ -58,8 +58,9 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     facets, is_large = facet_of_face[sides], (np.bincount(facet_of_face) >= LARGE)[facet_of_face[sides]]
     ends = (np.abs(angles) >= SHARP) & is_large.any(axis=0)
     sharp = np.flatnonzero(ends)
-    for side in facets[:, sharp]:
-        ends[sharp] &= ~_begin_steps(sharp, side, mesh, angles, facets)
+    areas = np.bincount(facet_of_face, mesh.face_areas)[facets[:, sharp]]
+    smaller = np.where(areas[0] < areas[1], facets[0, sharp], facets[1, sharp])
+    ends[sharp] = ~_begin_steps(sharp, smaller, mesh, angles, facets)
     return ends
 
 
