@@ -57,7 +57,8 @@ ABOVE = 1.0 + 1e-6
 """Targets stay above the lower bound by this factor: single precision."""
 
 FAILED, FEW_POINTS = 4, 0.2
-"""Levels that fail before a weak lower bound is raised by few points and their partners, and share of the time left."""
+"""Levels that fail before a weak lower bound is raised by few points and their partners, in a share of the time left,
+and an upper one is looked for between nets."""
 
 TABU_NET, TABU_MOVES = 150, 4000
 """Points of the nets between which a tabu search finds a relation where the lower bound is weak, and its moves."""
@@ -81,7 +82,6 @@ def approach(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
         if k == FAILED and interval.upper > LOOSENESS * interval.lower:
             raise_by_persistence(DX, DY, interval, clock)
             raise_by_few_points(DX, DY, interval, clock.part(FEW_POINTS * clock.left))
-        if k == TIGHT_LEVELS and interval.upper > LOOSENESS * interval.lower:
             relation = _from_nets(work, interval, clock)
             if relation is not None:
                 _tighten(work, relation, interval, clock)

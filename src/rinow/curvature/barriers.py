@@ -22,6 +22,8 @@ LEAST_EDGES = 8
 """Certain edges of a mesh that is worth a closer look."""
 CERTAIN = ((10, 8.0), (8, 16.0))
 """Edges of a certain line, and its median jump over the standard error: shorter ones must be clearer."""
+LEAST_ENDS = 3
+"""Edges of a certain line at which large flat facets end, however short it is."""
 ROUND = np.radians(44.0)
 """Jump up to which lines that only bound single strips of faces may be those of a coarse round."""
 ALIKE = 3.0
@@ -40,8 +42,8 @@ def crease_barriers(mesh: TriangleMesh) -> Bools:
     -------
     is_crease : (n_edges,) ndarray of bool
         Those lines of `singular_features` of ten edges or more whose median jump is eight standard errors, or of eight
-        edges with sixteen, without the facets of coarse rounds and the edges around spikes.  Noise of a tenth of the
-        edge length makes no such line on a smooth surface.
+        edges with sixteen, or where large flat facets end, without the facets of coarse rounds and the edges around
+        spikes.  Noise of a tenth of the edge length makes no such line on a smooth surface.
     """
     turnings = EdgeTurnings(mesh)
     theta = np.abs(turnings.turnings)
@@ -60,7 +62,7 @@ def _certain_lines(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLine
     apart = kept & ~np.all(_around_spikes(mesh, kept)[edges], axis=1)
     sizes = np.bincount(labels[apart], minlength=mesh.n_vertices)
     told = apart & ~_bounds_strips(mesh, turnings, lines)
-    certain = np.zeros(mesh.n_vertices, np.bool_)
+    certain = np.bincount(labels[kept & turnings.ends_facet], minlength=mesh.n_vertices) >= LEAST_ENDS
     for least, ratio in CERTAIN:
         clear = told & (np.abs(lines.angles) >= ratio * lines.errors)
         certain |= (sizes >= least) & (2 * np.bincount(labels[clear], minlength=mesh.n_vertices) > sizes)

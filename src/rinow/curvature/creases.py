@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._arrays import read_only
+from rinow.curvature.exact_facets import ends_of_facets
 from rinow.kernels import crease_lines, creases, edge_noise, stencils
 from rinow.mesh import TriangleMesh
 
@@ -81,6 +82,11 @@ class EdgeTurnings:
         return read_only(gains)
 
     @cached_property
+    def ends_facet(self) -> Bools:
+        """(n_edges,): a large flat facet ends there, a crease beyond doubt whose jump is the turning."""
+        return ends_of_facets(self.mesh, self.turnings, self.gains, self.halfedges)
+
+    @cached_property
     def height_noise(self) -> Floats:
         """(n_edges,): standard deviation of the heights of the vertices around each edge, a length."""
         t, n = self.mesh.topology, self.mesh.n_vertices
@@ -91,6 +97,7 @@ class EdgeTurnings:
         for _ in range(NOISE_RINGS):
             stencils.ring_sums(noise, t.neighbour_offsets, t.neighbours, sums)
             noise = sums / (np.diff(t.neighbour_offsets) + 1)
+        noise[t.edges[self.ends_facet]] = 0.0
         return read_only(noise[t.edges].mean(axis=1))
 
     @cached_property
@@ -126,6 +133,7 @@ class EdgeTurnings:
             jumps,
             errors,
         )
+        jumps[self.ends_facet], errors[self.ends_facet] = self.turnings[self.ends_facet], 0.0
         return jumps, errors
 
 
@@ -167,13 +175,14 @@ def crease_lines_of(turnings: EdgeTurnings) -> CreaseLines:
     least = np.maximum(WEAK_ANGLE, WEAK_NOISE * turnings.least_errors) / MOST_JUMP
     flat = (turnings.least_errors < EXACT_NOISE) & (np.abs(theta) > EXACT_ANGLE / MOST_JUMP)
     candidates = np.flatnonzero((np.abs(theta) >= least) | flat)
-    ends = _ends_of_sections(theta, turnings.noise)
+    ends = np.where(turnings.ends_facet, creases.END, _ends_of_sections(theta, turnings.noise)).astype(np.int8)
     is_crease, jumps, errors = np.zeros(len(theta), np.bool_), theta, theta
     for is_last in (False, True):
         jumps, errors = turnings.jumps(candidates, ends)
         strong, weak = _evidence(theta, jumps, errors)
         is_crease = _linked(turnings, strong, weak, jumps, errors, is_last)
-        ends = np.where(is_crease, creases.END, np.minimum(ends, creases.END_STRAIGHT)).astype(np.int8)
+        certain = is_crease | turnings.ends_facet
+        ends = np.where(certain, creases.END, np.minimum(ends, creases.END_STRAIGHT)).astype(np.int8)
     degrees, turns = np.empty(mesh.n_vertices, np.intp), np.empty(mesh.n_vertices)
     t = mesh.topology
     crease_lines.junctions(

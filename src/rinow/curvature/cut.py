@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from rinow.curvature.barriers import crease_barriers
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.facets import POSITION_ROUNDING, take_facets
+from rinow.curvature.exact_facets import POSITION_ROUNDING
+from rinow.curvature.facets import take_facets
 from rinow.kernels import cuts
 from rinow.mesh import TriangleMesh
 

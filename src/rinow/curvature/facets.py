@@ -7,15 +7,13 @@ from numpy.typing import NDArray
 
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
+from rinow.curvature.exact_facets import POSITION_ROUNDING
 from rinow.kernels import facet_stars
 from rinow.mesh import TriangleMesh
 
-__all__ = ["POSITION_ROUNDING", "take_facets"]
+__all__ = ["take_facets"]
 
 Floats = NDArray[np.float64]
-
-POSITION_ROUNDING = 4.0 * 2.0**-24
-"""Error of positions over the size of the mesh: files keep 24 bits."""
 
 
 def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool_]) -> None:

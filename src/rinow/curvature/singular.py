@@ -113,9 +113,10 @@ def singular_features(mesh: Any) -> SingularFeatures:
     and its exponent d log κ / d log r = -J/Θ; below -½ the edge is a candidate.  It starts a line when J exceeds 20°
     and 4.5 standard errors, and continues one above 12° and 2.5; the errors come from the sections' deviation from
     their lines, their lengths, and the noise of the vertices' heights, which edges that turn to and fro tell.
-    Where both sides are flat to half a degree, 8° are enough.  Lines of fewer than four edges, and open ends of
-    fewer than six that do not end at a boundary or another crease, are dropped; edges of 40° and nine standard errors
-    count for two there.
+    Where both sides are flat to half a degree, 8° are enough.  Where a facet of eight faces or more that is flat to
+    rounding ends at 60° or more, and not with a step, there is a crease whatever the noise around.  Lines of fewer
+    than four edges, and open ends of fewer than six that do not end at a boundary or another crease, are dropped;
+    edges of 40° and nine standard errors count for two there.
 
     *Cone points.*  The defect of a disc of two rings, less the mean curvature density of the next two rings times
     its area, must exceed 0.08 rad and 12 standard deviations of the defects around, and most of it must lie at the

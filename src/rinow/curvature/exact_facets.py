@@ -1,0 +1,82 @@
+"""Ends of exactly flat facets: where many faces lie in one plane to rounding, no noise moves their vertices."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from rinow.mesh import TriangleMesh
+
+__all__ = ["POSITION_ROUNDING", "ends_of_facets"]
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+POSITION_ROUNDING = 4.0 * 2.0**-24
+"""Error of positions over the size of the mesh: files keep 24 bits."""
+LARGE = 8
+"""Faces of a facet that noise does not make flat by chance."""
+SHARP, TURNED = np.radians(60.0), np.radians(30.0)
+"""Least turning where a large facet ends, and of an edge that ends a step.  Between the voxels of a segmented volume
+marching cubes turn by 55° at most."""
+FEW = 100
+"""Most edges around a facet that is looked at as a step."""
+ALONG = 0.7
+"""Least cosine between two edges that run the same way."""
+
+
+def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedges: Indices) -> Bools:
+    """(n_edges,): edges where a large flat facet ends sharply and no step begins.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface.
+    turnings, gains : (n_edges,) ndarray of float
+        Turning of the normal at each edge, nan without, and its deviation for heights of deviation 1.
+    halfedges : (n_edges,) ndarray of intp
+        A half-edge of each edge.
+
+    Notes
+    -----
+    The smaller facet beside an edge is a step if it turns the other way at its far side.  Surfaces of voxels consist of steps, whose treads
+    are flat facets of a surface that is none.
+    """
+    other = mesh.topology.partners[halfedges]
+    if not np.any((other >= 0) & (np.abs(turnings) >= SHARP)):
+        return np.zeros(len(other), np.bool_)
+    sides = np.stack([halfedges // 3, np.where(other >= 0, other // 3, halfedges // 3)])
+    angles = np.where(other >= 0, np.nan_to_num(turnings), 0.0)
+    with np.errstate(invalid="ignore"):
+        is_flat = (other >= 0) & (np.abs(angles) <= POSITION_ROUNDING * mesh.diagonal * gains)
+    n = mesh.n_faces
+    graph = coo_array((is_flat[is_flat], sides[:, is_flat]), shape=(n, n))
+    facet_of_face = connected_components(graph, directed=False)[1]
+    facets, is_large = facet_of_face[sides], (np.bincount(facet_of_face) >= LARGE)[facet_of_face[sides]]
+    ends = (np.abs(angles) >= SHARP) & is_large.any(axis=0)
+    sharp = np.flatnonzero(ends)
+    areas = np.bincount(facet_of_face, mesh.face_areas)[facets[:, sharp]]
+    smaller = np.where(areas[0] < areas[1], facets[0, sharp], facets[1, sharp])
+    ends[sharp] = ~_begin_steps(sharp, smaller, mesh, angles, facets)
+    return ends
+
+
+def _begin_steps(edges: Indices, beside: Indices, mesh: TriangleMesh, angles: Floats, facets: Indices) -> Bools:
+    """Whether a facet beside each edge, with few borders, turns the other way at an edge that runs along it."""
+    turned = np.flatnonzero(np.abs(angles) >= TURNED)
+    order = np.argsort(facets[:, turned].ravel(), kind="stable")
+    owners, borders = facets[:, turned].ravel()[order], np.tile(turned, 2)[order]
+    first, last = (np.searchsorted(owners, beside, side) for side in ("left", "right"))
+    counts = np.where(last - first <= FEW, last - first, 0)
+    rows = np.repeat(np.arange(len(edges)), counts)
+    own = edges[rows]
+    far = borders[np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts) + first[rows]]
+    ends = mesh.vertices[mesh.topology.edges]
+    along = ends[:, 1] - ends[:, 0]
+    cosines = np.sum(along[own] * along[far], axis=1)
+    lengths = np.sum(along[own] ** 2, axis=1) * np.sum(along[far] ** 2, axis=1)
+    is_step = (angles[own] * angles[far] < 0.0) & (cosines**2 > ALONG**2 * lengths)
+    return np.bincount(rows[is_step], minlength=len(edges)) > 0

@@ -1,0 +1,91 @@
+"""Where large flat facets end: perforated plates, and voxels, whose treads are flat too."""
+
+import numpy as np
+import pytest
+from scipy.spatial import Delaunay
+
+import rinow
+from rinow.curvature.creases import EdgeTurnings
+from rinow.curvature.exact_facets import ends_of_facets
+
+
+def perforated_plate(n, sides, radius=0.3, thickness=0.4):
+    """A plate with n × n holes of so many sides, which turn on their way down, as in decimated models of parts.
+
+    Its vertices and faces, and the edges of its rims.
+    """
+    place, count = np.arange(n * n * sides).reshape(-1, sides), n * n * sides + 8 * n
+    layers, faces, rims = [], [], []
+    for height, turn, first in ((thickness, 0.0, 0), (0.0, 0.5, count)):
+        angles = 2 * np.pi * (np.arange(sides) + turn + 0.1) / sides
+        hole = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        centres = np.stack(np.meshgrid(np.arange(n), np.arange(n)), axis=-1).reshape(-1, 1, 2) + 0.5
+        side = np.linspace(0, n, 2 * n, endpoint=False)
+        border = [(side, 0 * side), (0 * side + n, side), (n - side, 0 * side + n), (0 * side, n - side)]
+        points = np.concatenate([(centres + hole).reshape(-1, 2), *(np.stack(p, axis=1) for p in border)])
+        flat = Delaunay(points).simplices
+        middles = points[flat].mean(axis=1)
+        flat = flat[np.linalg.norm(middles - np.floor(middles) - 0.5, axis=1) > radius * np.cos(np.pi / sides)]
+        turned = (np.linalg.det(points[flat[:, 1:]] - points[flat[:, :1]]) < 0) != (first > 0)
+        flat[turned] = flat[turned][:, ::-1]
+        faces.append(flat + first)
+        layers.append(np.column_stack([points, np.full(count, height)]))
+        loops = place, np.arange(count - 8 * n, count)
+        rim = [np.stack([loop, np.roll(loop, -1, axis=-1)], axis=-1).reshape(-1, 2) for loop in loops]
+        rims.append(np.concatenate(rim) + first)
+    (a, b), (c, d) = rims[0].T, rims[1].T
+    inside = len(place) * sides
+    walls = np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)])
+    is_outer = np.tile(np.arange(len(a)) >= inside, 2)
+    walls[is_outer] = walls[is_outer][:, ::-1]
+    return np.concatenate(layers), np.concatenate([*faces, walls]), np.concatenate(rims)
+
+
+def ball_of_voxels(radius):
+    """The boundary of all unit cubes of a lattice with centres within a radius."""
+    lattice = np.arange(-radius - 1, radius + 2)
+    is_inside = np.sum(np.stack(np.meshgrid(lattice, lattice, lattice)) ** 2, axis=0) <= radius**2
+    squares = []
+    for axis in range(3):
+        u, v = np.eye(3, dtype=int)[[(axis + 1) % 3, (axis + 2) % 3]]
+        for step in (1, -1):
+            corner = np.argwhere(is_inside & ~np.roll(is_inside, -step, axis))
+            corner[:, axis] += step > 0
+            squares.append(np.stack([corner, corner + u, corner + u + v, corner + v], axis=1)[:, ::step])
+    vertices, index = np.unique(np.concatenate(squares).reshape(-1, 3), axis=0, return_inverse=True)
+    index = index.reshape(-1, 4)
+    return vertices.astype(float), np.concatenate([index[:, [0, 1, 2]], index[:, [0, 2, 3]]])
+
+
+def marked(vertices, faces):
+    mesh = rinow.TriangleMesh(vertices, faces)
+    turnings = EdgeTurnings(mesh)
+    return mesh.topology.edges[ends_of_facets(mesh, turnings.turnings, turnings.gains, turnings.halfedges)]
+
+
+@pytest.mark.parametrize(("sides", "radius"), [(3, 0.3), (4, 0.45), (5, 0.48), (8, 0.45)])
+def test_rims_of_coarse_holes_are_creases(sides, radius):
+    # Edges turn by 90° at rims and back in the holes: by the stars of their vertices alone the plate is all noise.
+    vertices, faces, rims = perforated_plate(8, sides, radius)
+    found = rinow.singular_features((vertices, faces)).crease_edges
+    found = {tuple(edge) for edge in found.tolist()}
+    assert {tuple(sorted(edge)) for edge in rims.tolist()} <= found
+
+
+@pytest.mark.parametrize("noise", [0.01, 0.03])
+def test_no_facet_is_flat_by_chance(noise):
+    vertices, faces, _ = perforated_plate(6, 5)
+    assert len(marked(vertices, faces)) > 300
+    assert len(marked(vertices + np.random.default_rng(2).normal(0, noise, vertices.shape), faces)) == 0
+
+
+@pytest.mark.parametrize("radius", [5, 12])
+def test_treads_of_steps_end_no_facet(radius):
+    assert len(marked(*ball_of_voxels(radius))) == 0
+
+
+@pytest.mark.parametrize("quality", ["best", "fast"])
+def test_perforated_plates_have_no_curvature(quality):
+    vertices, faces, _ = perforated_plate(8, 6, 0.45)
+    result = rinow.surface_curvature((vertices, faces), quality=quality)
+    assert np.nanmax(np.abs(result.gaussian)) < 1e-6
