@@ -6,8 +6,8 @@ import pytest
 import parts
 import shapes
 from rinow import TriangleMesh, VertexStatus, surface_curvature
-from rinow.curvature.edge_points import without_strays
 from rinow.curvature.outliers import outlying_vertices
+from rinow.curvature.vertex_removal import without_strays
 
 SHAPE = shapes.irregular_ellipsoid(700)
 V, F = SHAPE.vertices, SHAPE.faces

@@ -8,16 +8,15 @@ Graphs
     `graph`, over `graph_rows` and `graph_wald`.
 Surfaces
     `surface` takes a method and gives a result with a status (`status`, `notes`) for the mesh as `repairs` leave it
-    (over `cracks`, `caps`, `edits`, `crossings`) and `edge_points` with `redundant`,
-    `outliers`, `polygons`;
-    each method makes an `estimate`.
+    (over `cracks`, `caps`, `edits`, `crossings`) and `vertex_removal` (of `redundant` vertices and `outliers`, by
+    `ear_clipping`), in `units` that are safe; each method makes an `estimate`.
 
     - Edge lengths alone: `angle_defect`, `wald`, `geodesic_stars`; `intrinsic` with `flow`, `waves`, `arcs`,
       `length_noise`, `unseen`.
     - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale` with `charts`, `patch_tasks`, `ends`.
     - Both: `lifted`; `auto` with `unresolved`.
-    - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`,
-      `exact_facets`, `flat`, `strays`.
+    - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`, `exact_facets`,
+      `flat`, `strays`.
 Points without a mesh
     `point_cloud`, over `cloud_facing` with `cloud_signs` and `cloud_stars`, `cloud_layers`, `cloud_sheet`,
     `cloud_hands`, `cloud_faces`, `cloud_holes`, `cloud_fit`; `clouds` as metric spaces.

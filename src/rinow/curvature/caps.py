@@ -1,4 +1,4 @@
-"""Faces without area whose three corners are different points of a line, and the vertex that lies amid an edge."""
+"""Caps: triangles with an angle of π, the apex of which lies amid the opposite edge."""
 
 from __future__ import annotations
 
@@ -39,11 +39,10 @@ def cap_faces(mesh: Mesh) -> Indices:
 
 
 def without_caps(mesh: Mesh) -> tuple[Mesh, list[AmidEdge]]:
-    """The same surface with no such face where that can be had, and the vertices amid an edge that they had.
+    """The same surface without caps where that can be had, and the vertices amid an edge that they had.
 
-    The longest edge of a cap and its neighbour is turned, so that the neighbour is split at the vertex in the middle of
-    it: no area, no angle and no distance on the surface changes.  At a boundary the cap is left out, unless a vertex
-    has no other face.
+    The longest edge of a cap is flipped, so that its neighbour is split at the apex: no area, no angle and no distance
+    on the surface changes.  At a boundary the cap is left out, unless a vertex has no other face.
     """
     waiting = cap_faces(mesh)
     if not len(waiting):
@@ -59,7 +58,7 @@ def without_caps(mesh: Mesh) -> tuple[Mesh, list[AmidEdge]]:
             beside = edited.on_edge(a, b) - {f}
             if len(beside) > 1 or beside & amid.keys():
                 continue
-            if beside and not _turn(edited, f, min(beside), AmidEdge(t, a, b)):
+            if beside and not _flip(edited, f, min(beside), AmidEdge(t, a, b)):
                 continue
             if not beside:
                 if any(edited.star(v) == {f} for v in (t, a, b)):
@@ -71,8 +70,8 @@ def without_caps(mesh: Mesh) -> tuple[Mesh, list[AmidEdge]]:
     return edited.result(), found
 
 
-def _turn(edited: EditedFaces, cap: int, other: int, place: AmidEdge) -> bool:
-    """Split the other face of the longest edge of a cap at the vertex on it, unless there is such an edge."""
+def _flip(edited: EditedFaces, cap: int, other: int, place: AmidEdge) -> bool:
+    """Flip the longest edge of a cap, unless the new edge is there already."""
     t, a, b = place
     c = apex(edited.face(other), a, b)
     if edited.on_edge(t, c):

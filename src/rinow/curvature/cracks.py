@@ -1,4 +1,4 @@
-"""Cracks: the two sides of a slit between faces have different vertices, which lie on each other's edges."""
+"""Cracks and T-vertices: slits between faces, whose two sides have vertices on each other's edges."""
 
 from __future__ import annotations
 

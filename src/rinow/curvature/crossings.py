@@ -1,4 +1,4 @@
-"""Edges with three faces or more: which two of them are one surface that goes on beyond the edge."""
+"""Non-manifold edges, of three faces or more: which two of them are one sheet that goes on beyond the edge."""
 
 from __future__ import annotations
 

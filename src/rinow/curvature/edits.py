@@ -1,4 +1,4 @@
-"""A few faces of a mesh replaced by others, found by the vertices they share."""
+"""Local edits of a mesh: a few faces replaced by others, at a cost that does not grow with the mesh."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
-__all__ = ["EditedFaces"]
+__all__ = ["EditedFaces", "Face", "apex"]
 
 Mesh = TriangleMesh | IntrinsicMesh
 Face = tuple[int, int, int]
@@ -34,7 +34,7 @@ class EditedFaces:
 
     @property
     def positions(self) -> NDArray[np.float64]:
-        """Those of the vertices; none of a mesh that is known by lengths."""
+        """(n_vertices, 3): positions of the vertices; (0, 3) for a mesh that is known by lengths."""
         return self.mesh.vertices if isinstance(self.mesh, TriangleMesh) else np.empty((0, 3))
 
     def star(self, vertex: int) -> set[int]:
@@ -54,7 +54,7 @@ class EditedFaces:
         return face
 
     def on_edge(self, a: int, b: int) -> set[int]:
-        """The faces that have both vertices."""
+        """The numbers of the faces that have both vertices."""
         return self.star(a) & self.star(b)
 
     def length(self, a: int, b: int) -> float:
@@ -107,5 +107,5 @@ class EditedFaces:
 
 
 def apex(face: Face, a: int, b: int) -> int:
-    """The vertex of a face beside two others."""
+    """The vertex of a face that is none of two others."""
     return next(v for v in face if v not in (a, b))

@@ -1,4 +1,4 @@
-"""Single vertices far beside a surface, told by angles: without them the surface goes on as it is around."""
+"""Outliers: single vertices far beside a surface, told by angle defects, which vanish around without them."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.ear_clipping import Place, triangulated
 from rinow.curvature.edits import EditedFaces, Face
-from rinow.curvature.polygons import Place, triangulated
 from rinow.curvature.stencils import ring_means
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
@@ -32,9 +32,9 @@ tip or a corner has all of its defect as a sum."""
 def outlying_vertices(mesh: TriangleMesh) -> list[int]:
     """Vertices that the surface is better without, no two of them beside each other.
 
-    A vertex that was moved has a defect of one sign, its neighbours have as much of the other one, and nobody farther
-    away has any to speak of.  It is that of these whose removal leaves the least, if it is far from what takes its
-    place.  At a boundary half of that is not seen.
+    A vertex that was moved has a defect of one sign, its neighbours have as much of the other one, and none beyond has
+    any to speak of.  Of these the outlier is the one whose removal leaves the least defects, if it is far from the
+    polygon of its neighbours.  None is looked for at a boundary, where half of that is not seen.
     """
     t = mesh.topology
     inner = t.vertex_is_manifold & ~t.vertex_is_boundary

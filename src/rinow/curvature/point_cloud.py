@@ -14,7 +14,8 @@ from rinow.curvature.cloud_sheet import cloud_sheet
 from rinow.curvature.estimate import Estimate, undefined
 from rinow.curvature.sheet import morton_order
 from rinow.curvature.status import VertexStatus
-from rinow.curvature.surface import LARGEST_SCALE, SurfaceCurvature, assembled, relabelled, rescaled
+from rinow.curvature.surface import SurfaceCurvature, assembled, relabelled, rescaled
+from rinow.curvature.units import LARGEST_SCALE
 from rinow.errors import InvalidInputError
 
 __all__ = ["point_cloud_curvature"]

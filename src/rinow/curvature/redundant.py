@@ -1,4 +1,4 @@
-"""Vertices without which the polyhedral surface is the same: amid a face, or an edge that was split on both sides."""
+"""Redundant vertices, without which the polyhedral surface is the same: amid a face, or amid an edge."""
 
 from __future__ import annotations
 

@@ -15,7 +15,6 @@ from rinow._printing import OneLine
 from rinow.curvature.angle_defect import angle_defect
 from rinow.curvature.auto import auto
 from rinow.curvature.cut import one_sided
-from rinow.curvature.edge_points import give_values, without_edge_points, without_strays
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.geodesic_stars import geodesic_wald, robinson
 from rinow.curvature.intrinsic import intrinsic
@@ -24,8 +23,10 @@ from rinow.curvature.notes import crease_notes, left_out_notes, mesh_notes
 from rinow.curvature.repairs import repair, sheets_of
 from rinow.curvature.sectional import sectional
 from rinow.curvature.status import VertexStatus, vertex_status
+from rinow.curvature.units import with_safe_lengths
+from rinow.curvature.vertex_removal import give_values, without_edge_points, without_strays
 from rinow.curvature.wald import wald
-from rinow.errors import InvalidInputError, InvalidMeshError
+from rinow.errors import InvalidInputError
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh, as_triangle_mesh
 
 __all__ = ["SurfaceCurvature", "assembled", "relabelled", "rescaled", "surface_curvature"]
@@ -44,9 +45,6 @@ DIRECTIONS = ("direction1", "direction2")
 QUARTILES = {"min": 0, "25 %": 25, "50 %": 50, "75 %": 75, "max": 100}
 POWERS = {"gaussian": 2, "spread": 2, "mean": 1, "k1": 1, "k2": 1, "curvedness": 1, "radius": -1}
 """Power of 1/length of each field that has a unit."""
-SAFE_SCALE, LARGEST_SCALE = 2.0**100, 2.0**505
-"""Lengths between the first and its inverse are computed as they are, others after a change of the unit; beyond the
-second one curvature is no number."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -159,7 +157,9 @@ def surface_curvature(
 
     See Also
     --------
-    singular_features, point_cloud_curvature, metric_space_curvature
+    singular_features : Cone points, creases and corners, where there is no curvature.
+    point_cloud_curvature : The same at points without faces.
+    metric_space_curvature : At points known by their distances.
 
     Notes
     -----
@@ -188,7 +188,7 @@ def surface_curvature(
     >>> bool(np.allclose(curvature.gaussian, 0.25) and np.allclose(curvature.mean, 0.5))
     True
     """
-    surface, unit = _with_safe_lengths(as_mesh(mesh))
+    surface, unit = with_safe_lengths(as_mesh(mesh))
     chosen = _chosen_method(method, quality, surface)
     if radius is not None:
         radius = _checked_radius(radius, chosen) * unit
@@ -204,20 +204,6 @@ def surface_curvature(
     notes += mesh_notes(surface, oriented=chosen not in BY_LENGTHS) + sheets.notes + crease_notes(on_crease)
     notes += left_out_notes(estimate.left_out, len(removed))
     return replace(relabelled(rescaled(result, unit), index), notes=notes)
-
-
-def _with_safe_lengths(mesh: TriangleMesh | IntrinsicMesh) -> tuple[TriangleMesh | IntrinsicMesh, float]:
-    """A mesh whose lengths have powers that neither overflow nor underflow, and its lengths over the given ones."""
-    longest = float(np.fmax.reduce(mesh.edge_lengths, axis=None))
-    if not longest > 0.0 or 1.0 / SAFE_SCALE < longest < SAFE_SCALE:
-        return mesh, 1.0
-    if not 1.0 / LARGEST_SCALE < longest < LARGEST_SCALE:
-        raise InvalidMeshError(f"mesh has edges of length {longest:.3g}, and its curvature no number; scale the mesh.")
-    unit = 2.0 ** -np.floor(np.log2(longest))
-    if isinstance(mesh, IntrinsicMesh):
-        return IntrinsicMesh(mesh.faces, mesh.edge_lengths * unit, mesh.n_vertices), unit
-    with np.errstate(over="ignore"):
-        return TriangleMesh(mesh.vertices * unit, mesh.faces), unit
 
 
 def _chosen_method(method: str, quality: str, mesh: TriangleMesh | IntrinsicMesh) -> str:

@@ -1,4 +1,7 @@
-"""Vertices in the middle of an edge: they lie on the chord, not on the surface, and are taken out of the mesh."""
+"""Vertex removal: vertices that tell nothing about a surface leave its mesh, and get the values of a neighbour.
+
+Those amid an edge lie on the chord, not on the surface (`caps`, `cracks`); others are `redundant` or `outliers`.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.caps import AmidEdge
+from rinow.curvature.ear_clipping import angle_between, triangulated
 from rinow.curvature.edits import EditedFaces, Face
 from rinow.curvature.estimate import Estimate, Floats
 from rinow.curvature.outliers import fill_without, outlying_vertices
-from rinow.curvature.polygons import angle_between, triangulated
 from rinow.curvature.redundant import redundant_vertices
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
@@ -53,9 +56,9 @@ def without_strays(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Removed
 
 
 def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Removed]]:
-    """The mesh without the faces of vertices amid an edge, where the surface is smooth, and those vertices.
+    """The mesh with the stars of vertices amid an edge filled, where the surface is smooth, and those vertices.
 
-    With positions it is also without other vertices that lie on a face or an edge of the rest (`redundant_vertices`).
+    With positions also those of other vertices that lie on a face or an edge of the rest (`redundant_vertices`).
 
     Parameters
     ----------
@@ -104,9 +107,8 @@ def _on_whole_edges(removed: list[Removed]) -> list[Removed]:
 def give_values(estimate: Estimate, status: NDArray[np.uint8], removed: list[Removed]) -> None:
     """Give the vertices that were taken out the values of the nearer end of their edge, and the worse status of both.
 
-    Of ends that are equally near it is the one with the smaller spread.
-
-    The spread also holds what the ends differ by, as far as the vertex is on the way.
+    Of ends that are equally near it is the one with the smaller spread.  The spread also holds what the ends differ by,
+    as far as the vertex is on the way.
     """
     for t, a, b, share in removed:
         is_first = share < 0.5 if abs(share - 0.5) > MIDDLE else estimate.spread[a] <= estimate.spread[b]

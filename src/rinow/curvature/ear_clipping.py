@@ -1,4 +1,4 @@
-"""Triangles of a plane polygon whose corners are vertices of a mesh."""
+"""Ear clipping: triangles of a plane polygon whose corners are vertices of a mesh."""
 
 from __future__ import annotations
 
