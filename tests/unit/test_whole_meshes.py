@@ -15,7 +15,7 @@ from rinow.comparison.surfaces import sample_of
 from rinow.comparison.whole_eccentricities import Eccentricities, gap_of_eccentricities
 from rinow.comparison.whole_meshes import WholeRelation
 from rinow.geodesics.edge_graph import edge_graph
-from rinow.kernels import covered_relations
+from rinow.kernels import distortion_bounds
 
 pytestmark = pytest.mark.usefixtures("compiled_searches")
 SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="rows of all vertices in plain Python take minutes")
@@ -52,7 +52,7 @@ def test_rows_are_those_of_dijkstra(monkeypatch):
     assert (metric.row(5) == expected[5]).all()
     group = np.array([[3, 4, 12, 13, 14, 40, 80, 3]])  # near and far, one of them twice
     found, low, high = np.empty((1, 8)), np.zeros((1, 81)), np.full((1, 81), np.inf)
-    covered_relations.bound_eccentricities(group, metric.graph, metric.step, found, low, high)
+    distortion_bounds.bound_eccentricities(group, metric.graph, metric.step, found, low, high)
     true = full.max(axis=1)
     assert found[0] == pytest.approx(true[group[0]], rel=1e-14)
     assert (low[0] <= true * (1 + 1e-12)).all() and (true <= high[0] * (1 + 1e-12)).all()

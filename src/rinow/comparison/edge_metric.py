@@ -16,14 +16,16 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 STEP = 4.0
-"""Mean lengths of edges that are settled in one step."""
+"""Length of a step of the kernels, in mean lengths of the edges."""
 
 ROWS = 16
 """Rows between two looks at the clock."""
 
 
 class EdgeMetric:
-    """A connected graph with its nodes renumbered, so that neighbours are near each other in memory.
+    """The shortest paths of a connected graph, renumbered so that neighbours are near each other in memory.
+
+    The order is that of Cuthill and McKee, reversed.
 
     Attributes
     ----------

@@ -14,7 +14,7 @@ from rinow.comparison.clock import Clock
 from rinow.comparison.edge_metric import EdgeMetric
 from rinow.comparison.surfaces import Sample
 from rinow.comparison.whole_meshes import FALL, GROUPS, Chooser
-from rinow.kernels import covered_relations
+from rinow.kernels import distortion_bounds
 from rinow.kernels.edge_rows import LANES
 
 __all__ = ["Eccentricities", "gap_of_eccentricities"]
@@ -67,7 +67,7 @@ class Eccentricities:
             groups.append(self._chooser.group(int(bounds.argmax()), bounds, below, -apart, 1.0))
         chosen, k = np.array(groups, np.intp).reshape(-1, LANES), len(groups)
         found, low, high = np.empty(chosen.shape), np.repeat(self.low[None], k, 0), np.repeat(self.high[None], k, 0)
-        covered_relations.bound_eccentricities(chosen, self.metric.graph, self.metric.step, found, low, high)
+        distortion_bounds.bound_eccentricities(chosen, self.metric.graph, self.metric.step, found, low, high)
         low.max(axis=0, out=self.low)
         high.min(axis=0, out=self.high)
         self.known = np.append(self.known, found)

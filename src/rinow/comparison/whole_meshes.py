@@ -1,7 +1,7 @@
-"""Relations of all vertices of two meshes, found from nets, and bounds that need not all distances.
+"""Correspondences of all vertices of two meshes, found from nets, and bounds of their distortion from some rows.
 
-Let R be a relation that covers both spaces, and δ(i) the largest |d(x_i, x_j) - d(y_i, y_j)| over the pairs j of R, for
-any pair i.  From i to another pair j, distances to a third one change by d(x_i, x_j) and d(y_i, y_j) at most, so
+Let R be a correspondence, a relation that covers both spaces, and δ(i) for any pair i of it the largest value of
+|d(x_i, x_j) - d(y_i, y_j)| over the pairs j.  From i to another pair j, distances to a third one change by d(x_i, x_j) and d(y_i, y_j) at most, so
 
     δ(j) <= δ(i) + d(x_i, x_j) + d(y_i, y_j),
 
@@ -19,7 +19,7 @@ from rinow.comparison.clock import Clock
 from rinow.comparison.edge_metric import EdgeMetric
 from rinow.comparison.large_work import farthest_points
 from rinow.comparison.surfaces import Sample
-from rinow.kernels import covered_relations, landmark_maps
+from rinow.kernels import distortion_bounds, landmark_maps
 from rinow.kernels.edge_rows import LANES
 
 __all__ = ["Chooser", "WholeRelation", "whole_relation"]
@@ -35,7 +35,7 @@ ROUNDS, SWEEPS = 6, 4
 """Times that the images of the net are found anew, and that all vertices are run through to find theirs."""
 
 SHARE_OF_IMAGES = 0.35
-"""Share of the time for the former."""
+"""Share of the time for the images of the net."""
 
 PARTS = 10
 """Parts of a sweep, or of the net, between two looks at the clock."""
@@ -47,17 +47,17 @@ WIDTH = 4.0
 """Radius of the ball from which a group is chosen, in the distances that its points shall have."""
 
 LOOKED_AT, SHARE_OF_COVER = 6e7, 0.5
-"""Vertices times pairs that are looked at in a second, until that is known, and share of the time that is planned."""
+"""Vertices times pairs looked at in a second, until that is measured, and share of the time that is planned for."""
 
 LEVELS, FALL = 40, 0.85
-"""Levels below the bound that may be aimed at, and the excess over the expected distortion of each of the last one."""
+"""Levels below the bound that may be aimed at; the excess of each over the expected distortion, over the last one's."""
 
 CROWDED = 1.2
 """Nodes needed for a cover, chosen in any order instead of farthest ones first."""
 
 
 class WholeRelation:
-    """A relation of all nodes: those of X with their images f, then those of Y with theirs, g.
+    """A correspondence of all nodes: those of X with their images f, then those of Y with theirs, g.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class WholeRelation:
         while not clock.over and self.bounds.max() > self.seen:
             groups = self._chosen(choosers, *self._aim(SHARE_OF_COVER * clock.left * rate))
             distortions, bounds = np.empty(groups.shape), np.repeat(self.bounds[None], len(groups), axis=0)
-            covered_relations.bound_distortions(
+            distortion_bounds.bound_distortions(
                 self.xs, self.ys, groups, self.X.graph, self.Y.graph, (self.X.step, self.Y.step), distortions, bounds
             )
             bounds.min(axis=0, out=self.bounds)
@@ -154,14 +154,14 @@ class Chooser:
         A node at distance d from one of the group is expected to fall to value + slope · d.
         """
         group = np.empty(LANES, np.intp)
-        covered_relations.choose_group(
+        distortion_bounds.choose_group(
             seed, target, value, slope, WIDTH, self._graph, bounds, group, self._spaces, self._work
         )
         return group
 
 
 def whole_relation(X: Sample, Y: Sample, pairs: Indices, clock: Clock) -> WholeRelation | None:
-    """A relation of all vertices that begins with pairs of points of two nets, which must be nets of meshes.
+    """A correspondence of all vertices that begins with pairs of points of two nets, which must be nets of meshes.
 
     None if the time does not suffice.
     """

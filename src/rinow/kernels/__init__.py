@@ -23,5 +23,5 @@ Distances of surfaces
 Relations between spaces
     `bitsets`, `compatibility`, `correspondences`, `distortion`; `correspondence_search`, `level_search`, `subset_maps`,
     `unit_propagation`; `correspondence_tabu`, `bijection_tabu`, `dives`, `polish`; `edge_rows`, `landmark_maps` and
-    `covered_relations` of all vertices of meshes.
+    `distortion_bounds` of all vertices of meshes.
 """

@@ -1,9 +1,10 @@
 """Lengths of shortest paths along the edges of a graph from one node, or from several near each other at once.
 
-Nodes wait in two lists: those near the front, in the order of their arrival, and those farther away.  A node whose
-distance falls later is taken again, until nothing falls any more.  So the distances are those of Dijkstra's algorithm
-to the bit: both end with the least sum of lengths, added from the source on.  Several sources have their distances side
-by side, so that one look at an arc serves all of them; their fronts must pass a node at nearly the same time.
+Nodes wait in two lists (the near-far method): those near the front, in the order of their arrival, and those farther
+away.  A node whose distance falls later is taken again, until nothing falls any more.  So the distances are those of
+Dijkstra's algorithm to the bit: both end with the least sum of lengths, added from the source on.  Several sources have
+their distances side by side, so that one look at an arc serves all of them; their fronts must pass a node at nearly the
+same time.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""The distortion of a relation of all nodes of two graphs, bounded by the rows of some of its pairs.
+"""Bounds of the distortion of a correspondence of all nodes of two graphs, from the rows of some of its pairs.
 
 The distances of a pair i = (x_i, y_i) from all others give its own distortion, the largest |d(x_i, x_j) - d(y_i, y_j)|.
 Another pair j is at distance s = d(x_i, x_j) + d(y_i, y_j) from it, so by the triangle inequality that of j is larger
