@@ -1,7 +1,8 @@
 """Correspondences of all vertices of two meshes, found from nets, and bounds of their distortion from some rows.
 
 Let R be a correspondence, a relation that covers both spaces, and δ(i) for any pair i of it the largest value of
-|d(x_i, x_j) - d(y_i, y_j)| over the pairs j.  From i to another pair j, distances to a third one change by d(x_i, x_j) and d(y_i, y_j) at most, so
+|d(x_i, x_j) - d(y_i, y_j)| over the pairs j.  From i to another pair j, distances to a third one change by d(x_i, x_j)
+and d(y_i, y_j) at most, so
 
     δ(j) <= δ(i) + d(x_i, x_j) + d(y_i, y_j),
 
