@@ -8,26 +8,11 @@ vertices of a mesh, in units of 1/radius², beside the standard error that is re
 
 from __future__ import annotations
 
-import statistics
-import time
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 from _mesh import jittered_torus, torus_curvature
+from _timing import median_seconds
 
 import rinow
-
-
-def milliseconds(action: Callable[[], Any], runs: int = 7) -> float:
-    """Time of a call."""
-    action()
-    times = []
-    for _ in range(runs):
-        start = time.perf_counter()
-        action()
-        times.append(time.perf_counter() - start)
-    return 1e3 * statistics.median(times)
 
 
 def model_surface(n: int) -> np.ndarray:
@@ -49,7 +34,7 @@ def speeds() -> None:
         "angle_at, curvature estimated": lambda: rinow.angle_at(D40, 0, 1, 2),
     }
     for name, call in calls.items():
-        print(f"{name:55s} {milliseconds(call):9.1f} ms")
+        print(f"{name:55s} {1e3 * median_seconds(call, 7):9.1f} ms")
 
 
 def errors() -> None:

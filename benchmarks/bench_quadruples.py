@@ -9,13 +9,12 @@ rounding of the distances explains: condition · 2⁻⁵³ / diameter² + 2⁻�
 from __future__ import annotations
 
 import math
-import statistics
 import sys
-import time
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from _timing import median_seconds
 from numba import njit, prange
 
 import rinow
@@ -25,15 +24,9 @@ EPS = 2.0**-53
 I, J = np.triu_indices(4, 1)
 
 
-def rate(action: Callable[[], Any], n: int, runs: int = 5) -> float:
+def rate(action: Callable[[], Any], n: int) -> float:
     """Rows a second: the median of several runs after one call that compiles and warms."""
-    action()
-    times = []
-    for _ in range(runs):
-        start = time.perf_counter()
-        action()
-        times.append(time.perf_counter() - start)
-    return n / statistics.median(times)
+    return n / median_seconds(action)
 
 
 def sampled(k: float, radius: float, n: int, rng: np.random.Generator) -> np.ndarray:

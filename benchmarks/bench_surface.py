@@ -13,27 +13,16 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from _mesh import jittered_torus, torus_curvature
+from _timing import median_seconds
 
 import rinow
 
 RUNS = 5
-
-
-def median_seconds(action: Callable[[], Any], runs: int = RUNS) -> float:
-    """Median wall time of an action after one call that compiles and warms."""
-    action()
-    times = []
-    for _ in range(runs):
-        start = time.perf_counter()
-        action()
-        times.append(time.perf_counter() - start)
-    return statistics.median(times)
 
 
 def bench_reading(path: Path) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rinow import IntrinsicMesh
+from rinow import IntrinsicMesh, SpaceForm
 
 
 def flat_torus(n=24):
@@ -47,3 +47,22 @@ def sphere_net(n, diameter=None):
     D = (D + D.T) / 2
     np.fill_diagonal(D, 0)
     return D if diameter is None else D * (diameter / D.max())
+
+
+def sampled(k, n, seed, radius=0.5):
+    """Distances of random points of a disk of S_k."""
+    surface = SpaceForm(k)
+    points = surface.sample(n, radius, np.random.default_rng(seed))
+    D = surface.distance(points[:, None], points)
+    return 0.5 * (D + D.T)
+
+
+def cone(angle, n, seed):
+    """Distances of random points of the unit disk around the apex of a flat cone, which is point 0."""
+    rng = np.random.default_rng(seed)
+    r, u = np.sqrt(rng.random(n)), angle * rng.random(n)
+    r[0] = 0
+    turn = np.abs(u[:, None] - u)
+    turn = np.minimum(np.minimum(turn, angle - turn), np.pi)
+    D = np.sqrt((r[:, None] - r) ** 2 + 4 * r[:, None] * r * np.sin(turn / 2) ** 2)
+    return 0.5 * (D + D.T)

@@ -8,18 +8,12 @@ import numpy as np
 import pytest
 
 import rinow
+from metric_shapes import sampled
 from naive import regular_disks as naive
 from rinow import regular_radius
 from rinow.kernels import spaceform_model
 
 PAIRS = np.triu_indices(4, 1)
-
-
-def sampled(k, n, seed, radius):
-    surface = rinow.SpaceForm(k)
-    points = surface.sample(n, radius, np.random.default_rng(seed))
-    D = surface.distance(points[:, None], points)
-    return 0.5 * (D + D.T)
 
 
 def with_side_points(k, radius, seed):

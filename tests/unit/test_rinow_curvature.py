@@ -12,6 +12,7 @@ import pytest
 
 import conformal
 import rinow
+from metric_shapes import cone, sampled
 from naive import comparison as naive
 from naive import spaceform
 from rinow import rinow_curvature, rinow_point_curvature
@@ -25,24 +26,6 @@ def matrix(six):
     D = np.zeros((4, 4))
     D[PAIRS] = six
     return D + D.T
-
-
-def sampled(k, n, seed, radius=0.5):
-    surface = rinow.SpaceForm(k)
-    points = surface.sample(n, radius, np.random.default_rng(seed))
-    D = surface.distance(points[:, None], points)
-    return 0.5 * (D + D.T)
-
-
-def cone(angle, n, seed):
-    """Points of the unit disk around the apex of a flat cone, which is point 0."""
-    rng = np.random.default_rng(seed)
-    r, u = np.sqrt(rng.random(n)), angle * rng.random(n)
-    r[0] = 0
-    turn = np.abs(u[:, None] - u)
-    turn = np.minimum(np.minimum(turn, angle - turn), np.pi)
-    D = np.sqrt((r[:, None] - r) ** 2 + 4 * r[:, None] * r * np.sin(turn / 2) ** 2)
-    return 0.5 * (D + D.T)
 
 
 # ------------------------------------------------------------------ four points

@@ -9,17 +9,11 @@ import pytest
 
 import conformal
 import rinow
+from metric_shapes import cone, sampled
 from rinow import regular_radius, rinow_point_curvature, wald_curvature
 from rinow.kernels import spaceform_model
 
 SURFACE = conformal.Disk()
-
-
-def sampled(k, n, seed, radius=0.5):
-    surface = rinow.SpaceForm(k)
-    points = surface.sample(n, radius, np.random.default_rng(seed))
-    D = surface.distance(points[:, None], points)
-    return 0.5 * (D + D.T)
 
 
 def rays(k, n_rays=6, n_rings=3, step=0.1):
@@ -35,17 +29,6 @@ def rays(k, n_rays=6, n_rings=3, step=0.1):
     D = np.where(aligned, along, 0.5 * (D + D.T))
     D[0], D[:, 0] = r, r
     return D
-
-
-def cone(angle, n, seed):
-    """Points of the unit disk around the apex of a flat cone, which is point 0."""
-    rng = np.random.default_rng(seed)
-    r, u = np.sqrt(rng.random(n)), angle * rng.random(n)
-    r[0] = 0
-    turn = np.abs(u[:, None] - u)
-    turn = np.minimum(np.minimum(turn, angle - turn), np.pi)
-    D = np.sqrt((r[:, None] - r) ** 2 + 4 * r[:, None] * r * np.sin(turn / 2) ** 2)
-    return 0.5 * (D + D.T)
 
 
 # ------------------------------------------------------------------ where the curvature exists
