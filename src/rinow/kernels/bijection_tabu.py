@@ -14,6 +14,7 @@ from rinow.kernels.correspondence_tabu import (
     TOTAL_STALL,
     excess,
     keep_at_random,
+    note_best,
     random_below,
 )
 
@@ -106,9 +107,7 @@ def descend(tabu, t, n_moves, best_f):
         tabu.totals[0] += change
         if tabu.counters[MOVE] % 1024 == 0:
             rebuild(tabu, t)
-        if tabu.totals[0] < tabu.totals[1] - 1e-7:
-            tabu.totals[1] = tabu.totals[0]
-            tabu.counters[TOTAL_STALL] = 0
+        if note_best(tabu):
             best_f[:] = tabu.f
     return False
 

@@ -156,6 +156,16 @@ def _make_move(tabu, p, image, t, tenure):
 
 
 @kernel
+def note_best(tabu):
+    """Note the total if it is less than all before, beyond rounding; whether it is."""
+    if not tabu.totals[0] < tabu.totals[1] - 1e-7:
+        return False
+    tabu.totals[1] = tabu.totals[0]
+    tabu.counters[TOTAL_STALL] = 0
+    return True
+
+
+@kernel
 def descend(tabu, t, n_moves, best_f, best_g):
     """Make up to n_moves moves; whether the target was met.  The maps with the least total are kept."""
     chosen = np.empty(CANDIDATES, np.int64)
@@ -172,9 +182,7 @@ def descend(tabu, t, n_moves, best_f, best_g):
         tabu.totals[0] += 2.0 * change
         if tabu.counters[MOVE] % 1024 == 0:
             rebuild(tabu, t)
-        if tabu.totals[0] < tabu.totals[1] - 1e-7:
-            tabu.totals[1] = tabu.totals[0]
-            tabu.counters[TOTAL_STALL] = 0
+        if note_best(tabu):
             best_f[:] = tabu.f
             best_g[:] = tabu.g
     return False

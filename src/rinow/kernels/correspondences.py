@@ -32,12 +32,18 @@ class Queue(NamedTuple):
 
 
 @kernel
-def delete(relation, queue, x, y):
-    """Take the pair (x, y) out and mark its row and column."""
+def take_out(relation, x, y):
+    """Take the pair (x, y) out."""
     discard(relation.rows[x], y)
     discard(relation.columns[y], x)
     relation.row_counts[x] -= 1
     relation.column_counts[y] -= 1
+
+
+@kernel
+def delete(relation, queue, x, y):
+    """Take the pair (x, y) out and mark its row and column."""
+    take_out(relation, x, y)
     queue.rows[x] = True
     queue.columns[y] = True
 

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rinow.kernels._jit import inner, kernel
-from rinow.kernels.bitsets import ONE, ZERO, bit, contains, discard, first_point, insert, lowest_bit, popcount
+from rinow.kernels.bitsets import ONE, ZERO, bit, contains, first_point, insert, lowest_bit, popcount
 from rinow.kernels.correspondence_search import EXHAUSTED, FOUND, PAUSED, fixes
-from rinow.kernels.correspondences import Relation
+from rinow.kernels.correspondences import Relation, take_out
 
 DEPTH, NODES, LIMIT, REFUTED = range(4)
 """Places in the progress: decisions made; nodes since the last restart, and how many are allowed; pairs refuted at the
@@ -169,10 +169,7 @@ def _refute(problem, stack, depth, weights):
 @inner
 def _delete(relation, stack, x, y):
     """Take a pair out and mark its row and column."""
-    discard(relation.rows[x], y)
-    discard(relation.columns[y], x)
-    relation.row_counts[x] -= 1
-    relation.column_counts[y] -= 1
+    take_out(relation, x, y)
     stack.changed_rows[x] = True
     stack.changed_columns[y] = True
 
