@@ -99,7 +99,7 @@ def test_inserted_points_leave_the_surface_as_it_is():
     np.testing.assert_allclose(D, rinow.MetricSpace.from_points(positions[:30]).distances, atol=1e-12)
 
 
-def test_refusals():
+def test_faults_of_arguments_are_named():
     s = icosphere(0)
     with pytest.raises(InvalidInputError, match="meshes is empty"):
         study_meshes([], (s.vertices, s.faces))

@@ -72,7 +72,7 @@ def test_haantjes_along_a_curve(points, reach):
 
 
 @given(polylines(5, 5), st.integers(0, 4))
-def test_alt_curvature(points, i):
+def test_alt_curvature_agrees_with_the_naive_twin(points, i):
     # The twin solves exactly; orthogonalising four terms in floats costs eps times the square of their condition,
     # up to 1e8 for such wild curves, on squares of up to (2/0.05)².
     expected = naive.alt(points.tolist(), i)
@@ -97,7 +97,7 @@ def test_motion_and_unit(points, closed, kind, seed, exponent):
 
 
 @given(polylines(), st.booleans(), st.sampled_from(KINDS))
-def test_direction(points, closed, kind):
+def test_direction_does_not_matter(points, closed, kind):
     actual = curve_curvature(points[::-1], kind=kind, closed=closed)[::-1]
     expected = curve_curvature(points, kind=kind, closed=closed)
     np.testing.assert_allclose(actual**2, expected**2, rtol=1e-7, atol=1e-7)

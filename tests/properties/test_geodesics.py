@@ -40,7 +40,7 @@ def test_any_faces_equal_the_naive_twin(case, seed):
 
 @settings(max_examples=25)
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 1.0), st.floats(-6.0, 6.0))
-def test_invariances(seed, amount, exponent):
+def test_renumbering_turned_faces_and_similarity_change_the_unit_only(seed, amount, exponent):
     """Renumbering, turned faces and a similarity change nothing but the unit."""
     rng = np.random.default_rng(seed)
     V, F, *_ = shapes.noisy(shapes.irregular_torus(80), amount, seed=seed)

@@ -14,7 +14,7 @@ def _topology(n, faces):
 
 
 @given(face_lists())
-def test_edges(case):
+def test_edges_agree_with_the_naive_twin(case):
     n, faces = case
     t = _topology(n, faces)
     expected = naive.edge_faces(faces.tolist())
@@ -59,7 +59,7 @@ def _check_neighbours(t, n, faces):
 
 
 @given(face_lists())
-def test_neighbours(case):
+def test_neighbours_are_those_of_the_faces(case):
     n, faces = case
     _check_neighbours(_topology(n, faces), n, faces)
 
@@ -78,7 +78,7 @@ def test_orientation_is_consistent_after_flips(case, data):
 
 
 @given(face_lists(), st.permutations(range(8)))
-def test_relabelling(case, order):
+def test_relabelling_changes_no_count(case, order):
     n, faces = case
     order = np.array([i for i in order if i < n])
     t, u = _topology(n, faces), _topology(n, order[faces])

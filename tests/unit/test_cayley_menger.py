@@ -185,7 +185,7 @@ def test_the_centre_of_the_circumsphere_makes_a_flat_simplex():
         assert abs(rinow.cayley_menger_determinant(centred)) <= 1e-13 * max(radius, d.max()) ** 8 * 1e3
 
 
-def test_gram_identity():
+def test_four_points_have_eight_gram_determinants():
     # Four points: the bordered determinant is 8 times the Gram determinant of the edges at one of them.
     points, D = simplices(4, 3, 50, seed=9)
     edges = points[:, 1:] - points[:, :1]

@@ -98,7 +98,7 @@ def test_every_method_runs(folder, capsys, method):
     assert json.loads(capsys.readouterr().out)["counts"]["vertices"] == 4
 
 
-def test_info(folder, capsys):
+def test_info_counts_edges_and_area(folder, capsys):
     assert main(["info", "in.ply", "--json"]) == 0
     record = json.loads(capsys.readouterr().out)
     assert record["edges"] == 6

@@ -31,7 +31,7 @@ def run(capfd, *arguments):
     return code, out.out, out.err
 
 
-def test_surfaces(folder, capfd):
+def test_surfaces_have_an_interval_and_fields(folder, capfd):
     code, out, err = run(capfd, "compare", "a.ply", "b.obj", "--json", "--unit", "mm", "-o", "a2.ply", "-o", "b.csv")
     assert (code, err) == (0, "")
     record = json.loads(out)
@@ -58,7 +58,7 @@ def test_the_table_says_the_interval_in_words(folder, capfd):
     assert "\x1b" not in out
 
 
-def test_points(folder, capfd):
+def test_points_have_a_distance_and_witnesses(folder, capfd):
     code, out, _ = run(capfd, "compare", "p.csv", "q.txt", "--points", "--json", "-o", "p.npz")
     record = json.loads(out)
     assert code == 0
@@ -128,7 +128,7 @@ def test_surfaces_by_their_inner_distances(folder, capfd):
     assert record["upper"] >= np.log(2) - 1e-12
 
 
-def test_net(folder, capfd):
+def test_net_writes_meshes_and_tables(folder, capfd):
     s = icosphere(2)
     rinow.write_mesh("s.ply", (s.vertices, s.faces))
     code, out, err = run(

@@ -53,7 +53,7 @@ def test_hands_are_those_of_each_part():
 def test_the_spacing_of_squares_is_the_same_at_their_border():
     squares = np.stack(np.meshgrid(np.arange(24.0), np.arange(24.0), [0.0]), axis=-1).reshape(-1, 3)
     spacing = cloud_sheet(squares, *nearest_points(squares)).sheet.spacing
-    # Discs that the border cuts made it 1.18 times as large there.
+    # Discs that the border cuts make it 1.18 times as large there.
     np.testing.assert_allclose(spacing, np.median(spacing), rtol=0.06)
 
 
@@ -61,7 +61,7 @@ def test_needles_are_resolved_and_volumes_are_not():
     needle = shapes.noisy(shapes.irregular_ellipsoid(3000, (1.5, 0.4, 0.4)), 0.1).vertices
     assert np.mean(rinow.point_cloud_curvature(needle).status == VertexStatus.UNRESOLVED) < 1e-3
     volume = rinow.point_cloud_curvature(np.random.default_rng(1).normal(size=(3000, 3)))
-    # Where each point went by its own star it was 0.86.
+    # It is 0.86 if each point goes by its own star.
     assert np.mean(volume.status == VertexStatus.UNRESOLVED) > 0.9
 
 
@@ -75,4 +75,4 @@ def test_spread_of_few_points(n):
         cloud = rinow.point_cloud_curvature(points)
         known = np.isfinite(cloud.gaussian)
         held.append(np.abs(cloud.gaussian - exact)[known] <= 2 * cloud.spread[known])
-    assert np.concatenate(held).mean() > 0.83  # it was 0.75 to 0.8
+    assert np.concatenate(held).mean() > 0.83  # 0.75 to 0.8 without the factor 120/n - 1

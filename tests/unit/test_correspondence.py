@@ -64,7 +64,7 @@ def test_composition_adds_distortions():
         ([[0.5, 1]], "give integer indices"),
     ],
 )
-def test_bad_relations(relation, message):
+def test_faults_of_relations_are_named(relation, message):
     with pytest.raises(InvalidInputError, match=message):
         distortion(relation, LINE, LINE)
 
@@ -153,7 +153,7 @@ def test_undecided_without_time():
     assert find_approximation(X, Y, 0.0, 2 * half, time_limit=0).found is None
 
 
-def test_bad_scales():
+def test_faults_of_scales_are_named():
     with pytest.raises(InvalidInputError, match="epsilon = -1"):
         find_epsilon_isometry(LINE, LINE, -1.0)
     with pytest.raises(InvalidInputError, match="delta = 0"):

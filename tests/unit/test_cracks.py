@@ -169,7 +169,7 @@ def test_a_plate_is_joined_to_a_longer_one_as_far_as_it_reaches():
     assert not t.face_flips.any()
 
 
-def test_holes_stay():
+def test_holes_are_no_cracks():
     for shape in (SHAPE, shapes.irregular_torus(800), shapes.irregular_sphere(800)):
         for f in range(0, len(shape.faces), 7):
             mesh = TriangleMesh(shape.vertices, np.delete(shape.faces, f, axis=0))
@@ -269,7 +269,7 @@ def rod(n=12):
 
 
 def test_vertices_of_rims_are_kept():
-    # They are all that is known of a cylinder: without them one of a CAD part had an eighth of its mean curvature.
+    # They are all that is known of a cylinder: without them one of a CAD part has an eighth of its mean curvature.
     mesh = rod()
     assert mesh.euler_characteristic == 2
     assert redundant_vertices(mesh) == []

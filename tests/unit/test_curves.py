@@ -123,7 +123,7 @@ def test_closed_and_open_regular_polygon(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_straight_line(kind):
+def test_straight_lines_have_curvature_0(kind):
     along = np.array([[1.0], [2.0], [4.0], [5.0], [5.5], [7.0], [8.0]])
     assert not curve_curvature(along, kind=kind).any()
     assert not curve_curvature(np.abs(along - along.T), kind=kind).any()
@@ -167,7 +167,7 @@ def test_ends_of_an_open_curve():
     np.testing.assert_allclose(curve_curvature(points, kind="haantjes", reach=2), expected, rtol=1e-14)
 
 
-def test_closing_edges():
+def test_closed_curves_go_on_over_their_ends():
     points = plane([0, 1, 2 + 1j, 2 + 3j, 1j])
     around = np.arange(-1, 6) % 5
     expected = [naive.menger(*points[around[i : i + 3]].tolist()) for i in range(5)]
@@ -266,7 +266,7 @@ def test_distances_with_a_fault_are_not_taken_for_points(value, message):
         (np.zeros((3, 2)), {"reach": 0}, "reach = 0 leaves no neighbours"),
     ],
 )
-def test_messages(points, options, message):
+def test_faults_of_arguments_are_named(points, options, message):
     with pytest.raises(rinow.InvalidInputError) as caught:
         curve_curvature(points, **options)
     assert message in str(caught.value)

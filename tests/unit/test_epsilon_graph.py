@@ -48,7 +48,7 @@ def test_the_default_net_is_fine_enough():
     assert result.error_bound <= 1.0
 
 
-def test_one_point():
+def test_one_point_has_an_exact_graph_without_edges():
     result = rinow.epsilon_graph([[0.0]], 1.0)
     assert (result.graph.shape, result.delta, result.error_bound) == ((1, 1), 0.0, 0.0)
 
@@ -71,6 +71,6 @@ BAD = [
 
 
 @pytest.mark.parametrize(("action", "message"), BAD)
-def test_refusals(action, message):
+def test_faults_of_arguments_are_named(action, message):
     with pytest.raises(InvalidInputError, match=re.escape(message)):
         action()

@@ -134,6 +134,6 @@ BAD = [
 
 
 @pytest.mark.parametrize(("action", "message"), BAD)
-def test_refusals(action, message):
+def test_faults_of_arguments_are_named(action, message):
     with pytest.raises(InvalidInputError, match=re.escape(message)):
         action()

@@ -45,7 +45,7 @@ def wheel(n_around, n_rings, angle):
 # ------------------------------------------------------------------ closed forms
 
 
-def test_cube():
+def test_cube_has_the_diagonals_of_its_nets():
     D = all_distances(*shapes.cube()[:2])
     # A space diagonal runs over two sides: the diagonal of a 1 by 2 rectangle.
     V = shapes.cube().vertices
@@ -141,7 +141,7 @@ def test_pages_of_a_book():
     np.testing.assert_allclose(all_distances(W, np.concatenate(faces)), expected, rtol=EXACT, atol=EXACT)
 
 
-def test_bow_tie():
+def test_paths_lead_through_the_vertex_of_a_bow_tie():
     D = all_distances(*shapes.bow_tie()[:2])
     np.testing.assert_allclose(D[1, 3:], 8**0.5, rtol=EXACT)
     np.testing.assert_array_equal(D, D.T)
@@ -274,12 +274,12 @@ def test_edges_are_longer():
         ([0], {"method": "fast"}, 'method = \'fast\' is unknown; give "exact", "edges" or "heat".'),
     ],
 )
-def test_bad_arguments(arguments, options, message):
+def test_faults_of_arguments_are_named(arguments, options, message):
     with pytest.raises(InvalidInputError, match=re.escape(message)):
         rinow.geodesic_distances(grid(2), arguments, **options)
 
 
-def test_bad_spaces():
+def test_faults_of_spaces_are_named():
     V, F = grid(1)
     two = np.concatenate([V, V + 5]), np.concatenate([F, F + 4])
     with pytest.raises(InvalidMeshError, match="vertices 0 and 4 have no geodesic distance; give `indices` within one"):

@@ -133,7 +133,7 @@ def test_matrix_and_graph_say_the_same():
             np.testing.assert_array_equal(rinow.graph_curvature(matrix, kind=kind).edges, expected.edges)
 
 
-def test_scaling():
+def test_curvature_scales_with_the_lengths():
     graph = random_graph(11, weighted=True)
     scaled = nx.Graph()
     scaled.add_nodes_from(graph)
@@ -255,7 +255,7 @@ def test_an_edge_of_infinite_length_is_none(kind):
         (csr_array((2, 3)), {}, "give a square matrix"),
     ],
 )
-def test_bad_input(graph, options, message):
+def test_faults_of_arguments_are_named(graph, options, message):
     with pytest.raises(InvalidInputError, match=message):
         rinow.graph_curvature(graph, **options)
 

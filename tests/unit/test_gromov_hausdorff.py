@@ -86,7 +86,7 @@ def test_equals_brute_force(seed):
 
 
 @pytest.mark.parametrize("case", GOLDEN, ids=lambda case: str(case["name"]))
-def test_known_values(case):
+def test_values_of_closed_forms_are_found_and_proved(case):
     X, Y = np.array(case["DX"]), np.array(case["DY"])
     result = unlimited(X, Y)
     check_certificate(result, X, Y)
@@ -225,7 +225,7 @@ def test_one_point_and_repeated_points():
         ([[0, 1]], "give a square matrix", InvalidInputError),
     ],
 )
-def test_bad_spaces(matrix, message, error):
+def test_faults_of_spaces_are_named(matrix, message, error):
     with pytest.raises(error, match=message):
         gromov_hausdorff(matrix, [[0.0]])
 
@@ -238,7 +238,7 @@ def test_broken_triangle_names_its_witness_and_may_be_allowed():
     assert gromov_hausdorff([[0.0]], MetricSpace(D, rtol=0.1)).upper == 1.05
 
 
-def test_bad_limits():
+def test_faults_of_limits_are_named():
     with pytest.raises(InvalidInputError, match="time_limit = -1"):
         gromov_hausdorff([[0.0]], [[0.0]], time_limit=-1)
     with pytest.raises(InvalidInputError, match="time_limit = nan"):

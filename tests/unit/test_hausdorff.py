@@ -299,7 +299,7 @@ REFUSALS = [
 
 
 @pytest.mark.parametrize(("sets", "options", "message"), REFUSALS)
-def test_refusals(sets, options, message):
+def test_faults_of_arguments_are_named(sets, options, message):
     with pytest.raises(InvalidInputError, match=f"^{re.escape(message)}"):
         rinow.hausdorff_distance(*sets, **options)
 

@@ -33,7 +33,7 @@ def test_a_point_at_equal_distances_is_no_midpoint():
     assert rinow.midpoints(D, 0, 1, epsilon=2.0).tolist() == [0, 1, 2]
 
 
-def test_defects():
+def test_defects_of_points_lines_and_circles():
     assert rinow.length_defect([[0.0]]) == 0.0
     assert rinow.length_defect([[0.0, 3.0], [3.0, 0.0]]) == 3.0
     assert rinow.length_defect(line(10)) == 1.0
@@ -89,6 +89,6 @@ BAD = [
 
 
 @pytest.mark.parametrize(("action", "message"), BAD)
-def test_refusals(action, message):
+def test_faults_of_arguments_are_named(action, message):
     with pytest.raises(InvalidInputError, match=re.escape(message)):
         action()

@@ -18,7 +18,7 @@ K = np.array([0.1, np.nan, -0.0, 1e300])
 # ------------------------------------------------------------------ GIFTI and FreeSurfer
 
 
-def test_fsaverage(tmp_path):
+def test_fsaverage5_is_read_whole(tmp_path):
     nilearn = find_spec("nilearn")
     if nilearn is None or nilearn.origin is None:
         pytest.skip("nilearn carries the surface")

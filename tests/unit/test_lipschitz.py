@@ -49,14 +49,14 @@ def test_equals_all_permutations(seed):
 
 
 @pytest.mark.parametrize("case", [c for c in GOLDEN if c.get("lipschitz")], ids=lambda case: str(case["name"]))
-def test_known_values(case):
+def test_values_of_closed_forms_are_found_and_proved(case):
     result = lipschitz_distance(case["DX"], case["DY"])
     check_certificate(result, case["DX"], case["DY"])
     assert result.exact
     assert abs(result.upper - case["lipschitz"]) <= 1e-12  # the logarithm is rounded
 
 
-def test_scaled_space():
+def test_a_space_and_its_multiple():
     """A space and its multiple by c are at distance |log c|."""
     X = cloud(np.random.default_rng(5), 9)
     assert lipschitz_distance(X, 4 * X).upper == math.log(4)
@@ -135,7 +135,7 @@ def test_dilatation_of_constant_and_tearing_maps():
     assert dilatation([0, 1], [[0, 0], [0, 0]], [[0, 1], [1, 0]]) == math.inf
 
 
-def test_bad_input():
+def test_faults_of_arguments_are_named():
     with pytest.raises(InvalidInputError, match=r"f has shape \(2,\)"):
         dilatation([0, 1], LINE, LINE)
     with pytest.raises(InvalidInputError, match=r"f\[2\] = 3 is outside 0\.\.2"):

@@ -37,7 +37,7 @@ def test_an_archive_of_numpy_is_read(tmp_path):
         ({"V": V, "F": F, "k": np.array([None] * 4)}, "k.npy is pickled"),
     ],
 )
-def test_npz_faults(tmp_path, arrays, fault):
+def test_faults_of_npz_are_named(tmp_path, arrays, fault):
     np.savez(tmp_path / "a.npz", allow_pickle=True, **arrays)
     with pytest.raises(FileFormatError, match=fault):
         rinow.read_mesh(tmp_path / "a.npz")

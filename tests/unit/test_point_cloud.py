@@ -115,7 +115,7 @@ def test_small_clouds_are_right_within_their_spread(n):
         cloud = rinow.point_cloud_curvature(2 * d / np.linalg.norm(d, axis=1)[:, None])
         known = np.isfinite(cloud.gaussian)
         held.append(np.abs(cloud.gaussian - 0.25)[known] <= 2 * cloud.spread[known])
-    # Where all others were around each point, a fifth was held, and errors were as large as the value.
+    # With all other points around each one a fifth is held, and errors are as large as the value.
     # Of 36 points 0.90 are held: their noise and bias are told from a few fits that share most points.
     assert np.concatenate(held).mean() > (0.6 if n < 36 else 0.88)
 
@@ -217,7 +217,7 @@ def test_two_close_spheres_are_two(gap, noise):
     points, exact = two_spheres(gap, noise)
     cloud = rinow.point_cloud_curvature(points)
     has_value = np.isfinite(cloud.gaussian)
-    # Taken for one sheet, they were noise of one spacing: errors of 0.1 to 40 at points with status OK.
+    # Taken for one sheet they are noise of one spacing: errors of 0.1 to 40 at points with status OK.
     assert has_value.mean() > 0.95
     assert np.abs(cloud.gaussian / exact - 1)[has_value].max() < 0.1
 
@@ -319,7 +319,7 @@ def test_too_few_points_and_lines_are_unresolved():
     assert len(empty.gaussian) == 0
 
 
-def test_bad_input():
+def test_faults_of_arguments_are_named():
     with pytest.raises(InvalidInputError, match="radius = 0 is not a positive length"):
         rinow.point_cloud_curvature(np.eye(3), radius=0)
     with pytest.raises(InvalidInputError, match="points has shape"):

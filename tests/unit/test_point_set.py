@@ -112,7 +112,7 @@ def test_sets_without_a_fit_are_nan():
     assert math.isfinite(rinow.fit_curvature(1 - np.eye(6)).value)
 
 
-def test_shapes():
+def test_batches_have_the_shape_of_their_leading_axes():
     batch = rinow.fit_curvature(np.array([[1 - np.eye(4)] * 3] * 2))
     assert batch.value.shape == batch.residual.shape == (2, 3)
     assert rinow.fit_curvature(np.empty((0, 5, 5))).value.shape == (0,)

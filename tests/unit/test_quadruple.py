@@ -47,7 +47,7 @@ def test_golden_counts_and_kinds():
     assert (np.isnan(result.condition) == (result.kind == "")).all()
 
 
-def test_golden_values():
+def test_values_agree_with_60_digits():
     values = rinow.embedding_curvatures(DISTANCES).values
     errors = []
     for d, v, row in zip(DISTANCES, values, GOLDEN, strict=True):
@@ -89,7 +89,7 @@ def test_golden_semidependent_and_linear_flags():
         ([2, 5, 5, 5, 5, 2], [0.242132641502], ["planar"]),
     ],
 )
-def test_examples(distances, values, kinds):
+def test_values_and_kinds_of_examples(distances, values, kinds):
     result = rinow.embedding_curvatures(distances)
     assert result.count == len(values)
     assert result.values[: len(values)] == pytest.approx(values, rel=1e-9, abs=1e-9)

@@ -58,7 +58,7 @@ def test_flat_disks_are_all_regular():
     assert regular_radius([[0.0]], 0) == math.inf
 
 
-def test_naive_twin():
+def test_radius_agrees_with_the_naive_twin():
     for seed in range(10, 16):
         points = np.random.default_rng(seed).uniform(-1, 1, (8, 3))
         D = np.linalg.norm(points[:, None] - points, axis=2)

@@ -68,7 +68,7 @@ def test_flat_and_spherical_quadruple_that_replaces_example_3_7_a():
 
 
 @pytest.mark.parametrize("rtol", [0.0, 0.01])
-def test_naive_twin(rtol):
+def test_bounds_agree_with_the_naive_twin(rtol):
     for seed in range(10, 14):
         D = np.triu(np.random.default_rng(seed).uniform(1, 2, (6, 6)), 1)
         D += D.T
@@ -207,7 +207,7 @@ def test_space_has_rinow_curvature_zero():
     assert abs(at.value) <= max(at.standard_error, 1e-9) < 0.1
 
 
-def test_few_points():
+def test_bounds_of_one_to_three_points():
     nothing = rinow_curvature([[0.0]])
     assert (nothing.lower, nothing.upper, nothing.lower_witness, nothing.n_points) == (math.inf, -math.inf, (), 1)
     triangle = rinow_curvature([[0, 1, 1], [1, 0, 1], [1, 1, 0]], rtol=0.0)

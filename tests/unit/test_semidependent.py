@@ -36,7 +36,7 @@ def semidependent(largest, n, seed, size=1.0):
     return size * np.stack([a, a + c, e, c, b, f], axis=1), k / size**2
 
 
-def test_golden_values():
+def test_values_agree_with_60_digits():
     n = 0
     for row in GOLDEN:
         d = np.array([float(x) for x in row["distances"].values()])
@@ -62,7 +62,7 @@ def test_agrees_with_the_angles():
     assert rinow.robinson_curvature(Q[wide]).value == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
 
-def test_special_forms():
+def test_special_forms_of_the_formula():
     a, b, e, f = 1.0, 0.8, 1.2, 1.1
     isosceles = rinow.robinson_curvature([a, 2 * a, e, a, b, f]).value
     over = 12 * (2 * a**2 + 2 * b**2 - e**2 - f**2)

@@ -31,7 +31,7 @@ def test_the_curvature_of_stars_of_a_surface_is_found(k, n_points):
 
 
 @pytest.mark.parametrize(("n", "k"), [(3, None), (5, None), (6, 0.0), (7, None)])
-def test_regular_stars(n, k):
+def test_regular_stars_have_closed_forms(n, k):
     # Equilateral triangles with n of them around a point: 2 sin(π/n) cosine(1/2) = 1 in S_k.
     actual = rinow.star_curvature([1.0] * n, [1.0] * n)
     half = 0.5 / math.sin(math.pi / n)
@@ -72,7 +72,7 @@ def test_rows_that_are_no_star_are_nan():
     assert np.isnan(rinow.star_curvature([1] * 3, [1, 0.1, 0.1]))
 
 
-def test_shapes():
+def test_batches_have_the_shape_of_their_leading_axes():
     assert rinow.star_curvature(np.ones((2, 3, 6)), np.ones((2, 3, 6))).shape == (2, 3)
     assert rinow.star_curvature(np.ones((0, 6)), np.ones((0, 6))).shape == (0,)
     for radii, chords in ((np.ones(3), np.ones(4)), (np.ones(2), np.ones(2)), (1.0, 1.0), (["a"] * 3, np.ones(3))):

@@ -102,6 +102,6 @@ def test_known_bound_is_kept_and_time_may_be_over():
 
 
 @pytest.mark.parametrize("radii", [(-1.0, 0.0), (0.0, math.nan), (1.0,), (math.inf, 0.0)])
-def test_bad_radii(radii):
+def test_faults_of_radii_are_named(radii):
     with pytest.raises(InvalidInputError, match="are not two lengths >= 0"):
         gromov_hausdorff([[0.0]], [[0.0]], covering_radii=radii)

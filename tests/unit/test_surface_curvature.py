@@ -24,7 +24,7 @@ def curvature(shape, **options):
 
 
 @pytest.mark.parametrize(("method", "tolerance"), [("sectional", 0.02), ("lifted", 0.05), ("wald", 1.5)])
-def test_ellipsoid(method, tolerance):
+def test_error_on_an_irregular_ellipsoid(method, tolerance):
     shape = shapes.irregular_ellipsoid(1000)
     c = curvature(shape, method=method)
     assert (c.status == VertexStatus.OK).all()
@@ -107,7 +107,7 @@ def test_too_few_neighbours_for_a_quadric_leave_the_circumscribed_sphere():
 
 
 @pytest.mark.parametrize("name", shapes.closed_shapes())
-def test_gauss_bonnet(name):
+def test_angle_defects_sum_to_the_euler_characteristic(name):
     shape = shapes.closed_shapes()[name]
     mesh = TriangleMesh(shape.vertices, shape.faces)
     total = np.sum(surface_curvature(mesh, method="angle_defect").gaussian * mesh.vertex_areas)
@@ -164,7 +164,7 @@ def test_two_fans_at_one_vertex(method):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_boundary(method):
+def test_boundary_vertices_have_their_status(method):
     shape = shapes.open_patch(900)
     c = curvature(shape, method=method)
     boundary = TriangleMesh(shape.vertices, shape.faces).topology.vertex_is_boundary
@@ -177,7 +177,7 @@ def test_boundary(method):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_moebius_strip(method):
+def test_moebius_strip_has_its_gaussian_curvature(method):
     shape = shapes.moebius_strip(48)
     c = curvature(shape, method=method)
     inner = c.status == VertexStatus.OK
@@ -400,7 +400,7 @@ def test_meshes_of_other_libraries():
         ({"method": "lifted", "radius": 1.0}, "radius = 1.0 is not for method 'lifted'"),
     ],
 )
-def test_wrong_options(options, message):
+def test_faults_of_options_are_named(options, message):
     with pytest.raises(InvalidInputError, match=message):
         curvature(SPHERE, **options)
 

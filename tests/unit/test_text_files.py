@@ -153,7 +153,7 @@ def test_several_solids_are_one_mesh(read):
 
 
 @pytest.mark.parametrize("header", [b"", b"solid but binary", b"COLOR=\n\r\x1a"])
-def test_binary_stl(read, header):
+def test_binary_stl_is_read_and_welded(read, header):
     V, F, *_ = shapes.icosphere(1)
     mesh = read("a.stl", binary_stl(V[F], header))
     # Single precision: half a unit in the last place of numbers up to 1.
@@ -193,6 +193,6 @@ def test_normals_are_written(tmp_path):
         (f"solid\n{TWO_FACETS.replace('1 1 0', '1 one 0')}endsolid\n", "vertex line 2 (counted from 0) has 'one'"),
     ],
 )
-def test_stl_faults(read, content, fault):
+def test_faults_of_stl_are_named(read, content, fault):
     with pytest.raises(FileFormatError, match=re.escape(fault)):
         read("a.stl", content)

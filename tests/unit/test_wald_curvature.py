@@ -134,7 +134,7 @@ def test_normed_planes_that_are_not_euclidean_have_none(exponent, n):
 
 @pytest.mark.parametrize("angle", [3.0, 5.0, 6.0, 7.0, 8.0])
 @pytest.mark.parametrize("n", [20, 60])
-def test_cone_points(angle, n):
+def test_cone_points_have_no_wald_curvature(angle, n):
     assert not wald_curvature(cone(angle, n, seed=7), 0, radius=1.0).exists
 
 
@@ -146,7 +146,7 @@ def test_beside_a_cone_point_the_surface_is_flat():
     assert curvature.value == pytest.approx(0, abs=1e-7)
 
 
-def test_graphs_branch():
+def test_graphs_that_branch_have_no_wald_curvature():
     star = wald_curvature(nx.star_graph(5), 0, radius=1.0)
     assert (star.n_quadruples, star.n_without_value, star.exists) == (15, 10, False)
     assert star.value > 0  # four leaves are equidistant
