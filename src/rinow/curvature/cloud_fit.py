@@ -35,9 +35,9 @@ AGREED = 0.4
 """Share of the triangles of the stars around on which their neighbours agree, above which the surface is known all the
 same: nearly all tips of noisy needles exceed it, and one in twenty points of those that fill space."""
 MANY = 120.0
-"""Twice the points of a cloud below which noise and bias are told from fits that share most of their points, so that the
-spread is MANY/n - 1 times as large for n points: else two spreads hold 0.81 of the errors of 36 points and 0.76 to 0.85
-of those of 44, but 0.96 of those of 60."""
+"""Twice the points of a cloud below which noise and bias are told from fits that share most points.  The spread
+of n points is MANY/n - 1 times as large: else two spreads hold 0.81 of the errors of 36 points and 0.76 to 0.85 of
+those of 44, but 0.96 of those of 60."""
 DETAIL_RINGS = 3
 """Rings of neighbours that detail is told from."""
 
