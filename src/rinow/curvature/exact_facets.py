@@ -42,8 +42,8 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
 
     Notes
     -----
-    The smaller facet beside an edge is a step if it turns the other way at its far side.  Surfaces of voxels consist of steps, whose treads
-    are flat facets of a surface that is none.
+    The smaller facet beside an edge is a step if it turns the other way at its far side.  Surfaces of voxels consist of
+    steps, whose treads are flat facets of a surface that is none.
     """
     other = mesh.topology.partners[halfedges]
     if not np.any((other >= 0) & (np.abs(turnings) >= SHARP)):
