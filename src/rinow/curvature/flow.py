@@ -60,15 +60,17 @@ class CurvatureFlow:
     @cached_property
     def spacing(self) -> Floats:
         """(n_vertices,): distance of neighbours, averaged around each vertex: see `stencils.local_spacing`."""
-        t, n = self.mesh.topology, self.mesh.n_vertices
-        edges = np.empty(n)
+        edges = np.empty(self.mesh.n_vertices)
         smoothing.mean_sides(self.metric, edges)
-        edges = self.means(edges, 1)
-        shares = np.where(t.vertex_is_boundary, 0.5, 1.0)
+        return np.clip(self.means(edges, 1), self.even_spacing, NEEDLES * self.even_spacing)
+
+    @cached_property
+    def even_spacing(self) -> Floats:
+        """(n_vertices,): the same of as many vertices if their triangles were equilateral."""
+        shares = np.where(self.mesh.topology.vertex_is_boundary, 0.5, 1.0)
         with np.errstate(all="ignore"):
             areas = self._ring_sums(self._ring_sums(self.mesh.vertex_areas)) / self._ring_sums(self._ring_sums(shares))
-        even = np.sqrt(2.0 / np.sqrt(3.0) * areas)
-        return np.clip(edges, even, NEEDLES * even)
+        return np.sqrt(2.0 / np.sqrt(3.0) * areas)
 
     def _ring_sums(self, values: Floats) -> Floats:
         sums = np.empty(self.mesh.n_vertices)

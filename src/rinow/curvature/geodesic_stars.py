@@ -9,10 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.wald import wald
+from rinow.geodesics.edge_graph import edge_graph
 from rinow.geodesics.exact import ExactGeodesics, GeodesicBalls
 from rinow.kernels import geodesic_stars as kernels
 from rinow.kernels import patch_order
@@ -28,6 +30,9 @@ PATCH, BLOCK = 200, 4096
 """Vertices of a patch, in whose order they are taken, and those whose balls are held at a time."""
 SPACINGS = 4.0
 """Default radius of `robinson`, in local spacings."""
+CROWDED, GRADED = 8.0, 0.5
+"""A default radius is at most so many spacings of even triangles at any vertex, and this share of the distance from
+there more: no ball holds thousands of vertices of finer parts."""
 INNER = 0.7
 """Radius of the star that one is compared with, over its own."""
 PASSES = 3
@@ -102,7 +107,8 @@ def robinson(mesh: TriangleMesh | IntrinsicMesh, radius: float | None = None) ->
     mesh : TriangleMesh or IntrinsicMesh
         The surface; only edge lengths are used.
     radius : float, optional
-        Distance of the points of the quadruples from the vertex; four local spacings by default.
+        Distance of the points of the quadruples from the vertex; by default four local spacings, or less where a finer
+        part of the mesh is near.
 
     Returns
     -------
@@ -119,11 +125,26 @@ def robinson(mesh: TriangleMesh | IntrinsicMesh, radius: float | None = None) ->
     by its symmetry has an error of second order in the radius.
     """
     flow = CurvatureFlow(mesh)
-    sizes = SPACINGS * flow.spacing if radius is None else np.full(mesh.n_vertices, radius)
+    sizes = _default_radii(flow) if radius is None else np.full(mesh.n_vertices, radius)
     values, radii = _both(mesh, sizes, _robinson_values)
     estimate = _estimate(mesh, values, radii.copy())
     _take_from_beside(flow, estimate, (radii < RESOLVED * flow.spacing) & (radii < sizes))
     return estimate
+
+
+def _default_radii(flow: CurvatureFlow) -> Floats:
+    """(n_vertices,): `SPACINGS`, less where finer parts are near, by shortest paths from beyond all vertices."""
+    beyond, fine = flow.mesh.n_vertices, CROWDED * flow.even_spacing
+    known = np.flatnonzero(np.isfinite(fine) & (fine > 0.0))
+    edges = edge_graph(flow.mesh).tocoo()
+    rows, columns = (
+        np.concatenate([own, other])
+        for own, other in zip(edges.coords, (np.full_like(known, beyond), known), strict=True)
+    )
+    graph = csr_array(
+        (np.concatenate([GRADED * edges.data, fine[known]]), (rows, columns)), shape=(beyond + 1, beyond + 1)
+    )
+    return np.minimum(SPACINGS * flow.spacing, dijkstra(graph, indices=beyond)[:beyond])
 
 
 def _take_from_beside(flow: CurvatureFlow, estimate: Estimate, to_fill: Bools) -> None:
