@@ -137,7 +137,7 @@ def surface_curvature(
     radius : float, optional
         Radius of all balls of "sectional" and "auto", of the averages of "intrinsic", or of the stars of "wald" and
         "robinson", positive, in the unit of length.  By default the data decide; "wald" takes the triangles around
-        each vertex, "robinson" four local spacings.
+        each vertex, "robinson" four local spacings, or less beside finer parts of the mesh.
     progress : callable, optional
         Called with the number of vertices done and their total.
     executor : Executor, optional
