@@ -62,7 +62,7 @@ def curvature(
         Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.  Points without faces: PLY, NPZ, NPY, or
         text with x, y, z on each line (XYZ, CSV, TSV, TXT, DAT).  With --distances a square matrix as text, NPY or NPZ.
     output
-        File to write the mesh and its curvature to; may be repeated.  PLY, VTP, NPZ and GIFTI carry fields; points
+        File to write the mesh and its curvature to; may be repeated.  PLY, VTP, VTK, NPZ and GIFTI carry fields; points
         are written as PLY, CSV or NPZ, points known by their distances as CSV or NPZ.
     method
         How to compute the curvature, for meshes; auto needs no setting.  sectional and lifted use positions; intrinsic,

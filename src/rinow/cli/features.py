@@ -35,7 +35,7 @@ def features(
     mesh
         Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.
     output
-        File to write the mesh and its features to; may be repeated.  PLY, VTP, NPZ and GIFTI carry fields.
+        File to write the mesh and its features to; may be repeated.  PLY, VTP, VTK, NPZ and GIFTI carry fields.
     picture
         PNG file to draw four views to.
     up

@@ -47,8 +47,8 @@ for name, summary in SUMMARIES.items():
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code.
 
-    It is 0 when done, 1 for bad input and 2 for wrong usage, either in one line on stderr; 130 after Ctrl-C, which
-    says nothing.
+    It is 0 when done, 1 for bad input and 2 for wrong usage, either in one line on stderr; 130 after Ctrl-C and 143
+    after a signal to end, which say nothing.
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:

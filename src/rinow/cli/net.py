@@ -45,7 +45,7 @@ def net(
         The first point, counted from 0.
     output
         File to write to; may be repeated.  CSV: the points in the order of their choice; any other format: the mesh
-        with the fields `net_distance` and `net_label`, which PLY, VTP, NPZ and GIFTI carry.
+        with the fields `net_distance` and `net_label`, which PLY, VTP, VTK, NPZ and GIFTI carry.
     unit
         Name of the unit of length of the file, such as mm.
     json
