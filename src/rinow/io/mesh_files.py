@@ -189,7 +189,7 @@ def write_mesh(
         notes = form.write(file, surface)
     if fields:
         left_out = (
-            f"{form.name} holds geometry only; left out: {', '.join(fields)} (PLY, NPZ, GIFTI, VTP and VTK keep fields)."
+            f"{form.name} holds geometry only; left out: {', '.join(fields)} (PLY, NPZ, GIFTI, VTP, VTK keep fields)."
         )
         notes = (left_out, *notes)
     return notes
