@@ -50,7 +50,7 @@ def test_the_hausdorff_distance_is_that_of_the_sagitta(spheres):
     assert spheres.hausdorff[0, 1] >= 1 - inradius - 0.002
 
 
-def test_table_and_plot(spheres):
+def test_studies_have_a_table_and_a_plot(spheres):
     rows = spheres.table()
     assert [row["n_points"] for row in rows] == [12, 42, 162]
     assert rows[0]["hausdorff_upper"] == spheres.hausdorff[0, 1]

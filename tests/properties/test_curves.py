@@ -88,7 +88,7 @@ def test_points_and_distances_agree(points, closed, kind):
 
 
 @given(polylines(), st.booleans(), st.sampled_from(KINDS), st.integers(2, 10**6), st.floats(-3, 3))
-def test_motion_and_unit(points, closed, kind, seed, exponent):
+def test_motions_change_nothing_and_similarities_the_unit(points, closed, kind, seed, exponent):
     rotation = Rotation.from_quat(np.random.default_rng(seed).normal(size=4))
     moved = rotation.apply(points + np.array([3.0, -2.0, 1.0]))
     scale = 10.0**exponent

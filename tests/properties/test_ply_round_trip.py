@@ -89,7 +89,7 @@ def test_every_file_is_read_as_meant(folder, file, form, newline):
 
 
 @given(st.lists(st.integers(-1, 5), min_size=3, max_size=20))
-def test_triangle_strips(folder, corners):
+def test_triangle_strips_agree_with_the_naive_twin(folder, corners):
     path = folder / "strip.ply"
     vertices = [(float(i), float(i * i), 0.0) for i in range(6)]
     axes = [(axis, "float") for axis in "xyz"]

@@ -52,7 +52,7 @@ def test_random_simplices_agree_with_exact_determinants(n):
         assert rinow.circumradius(D) == pytest.approx(expected, rel=1e-9)
 
 
-def test_golden_simplices():
+def test_simplices_agree_with_60_digits():
     for row in GOLDEN["simplices"]:
         n = row["dim"] + 1
         D = matrix([float(x) for x in row["distances"].values()], n)
@@ -62,7 +62,7 @@ def test_golden_simplices():
         assert rinow.circumradius(D) == pytest.approx(float(row["circumradius"]), rel=flat)
 
 
-def test_golden_quadruples():
+def test_quadruples_agree_with_60_digits():
     D = np.array([matrix([float(x) for x in row["distances"].values()], 4) for row in GOLDEN["quadruples"]])
     diameter = D.max(axis=(1, 2))
     expected = np.array([float(row["D"]) for row in GOLDEN["quadruples"]])
@@ -103,7 +103,7 @@ def test_needle_triangles_keep_all_digits():
     assert rinow.simplex_volume(matrix([a, b, c], 3)) == pytest.approx(triangles.triangle_area(a, b, c), rel=1e-14)
 
 
-def test_flat_simplices():
+def test_flat_simplices_have_volume_0_and_an_infinite_radius():
     for n, dimension in ((3, 1), (4, 2), (5, 3), (5, 2), (7, 5)):
         _, D = simplices(n, dimension, 100, seed=8)
         scale = D.max(axis=(1, 2)) ** (n - 1)

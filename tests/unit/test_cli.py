@@ -121,7 +121,7 @@ def test_list_of_commands_says_what_their_docstrings_say(name):
     assert documented.split() == SUMMARIES[name].split()
 
 
-def test_help_and_version(capsys):
+def test_help_and_version_exit_with_0(capsys):
     assert main(["--version"]) == 0
     assert rinow.__version__ in capsys.readouterr().out
     assert main(["--help"]) == 0

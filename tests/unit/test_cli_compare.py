@@ -87,7 +87,7 @@ def test_surfaces_as_metric_spaces(folder, capfd):
     assert record["notes"] == ["distances on the surfaces are lengths of shortest paths along edges."]
 
 
-def test_distance_matrices(folder, capfd):
+def test_distance_matrices_have_an_exact_distance_and_pairs(folder, capfd):
     code, out, err = run(capfd, "compare", "d.npz", "e.npy", "--distances", "--json", "-o", "pairs.csv")
     assert (code, err) == (0, "")
     record = json.loads(out)

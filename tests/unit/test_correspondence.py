@@ -165,7 +165,7 @@ def test_faults_of_scales_are_named():
 
 
 @pytest.mark.parametrize("metric", ["gromov_hausdorff", "lipschitz", "uniform"])
-def test_distance_matrix(metric):
+def test_distance_matrix_holds_the_single_distances(metric):
     rng = np.random.default_rng(71)
     spaces = [cloud(rng, 4) for _ in range(4)]
     seen = []
@@ -212,7 +212,7 @@ def test_gromov_hausdorff_distances_of_meshes():
     assert result.upper[0, 1] == 2.0  # the diameters differ by 4
 
 
-def test_bad_collections():
+def test_faults_of_collections_are_named():
     with pytest.raises(InvalidInputError, match="spaces is empty"):
         distance_matrix([])
     with pytest.raises(InvalidInputError, match="metric = 'other' is unknown"):

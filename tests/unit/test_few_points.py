@@ -62,7 +62,7 @@ def test_refutes_what_no_map_attains(seed):
 
 
 @SLOW
-def test_torus_and_sphere():
+def test_torus_and_sphere_are_apart_by_more_than_eccentricities_say():
     """Points at the hole of the torus have no antipodes; one of them alone gives the bound by eccentricities."""
     X = torus(24, 12)
     Y = metric_shapes.sphere_net(300, X.max())

@@ -113,7 +113,7 @@ def test_an_edge_longer_than_its_detour_has_the_distance_of_its_ends():
     np.testing.assert_array_equal(rinow.graph_curvature(graph, kind="menger").edges, 0)
 
 
-def test_direction_counts():
+def test_directed_edges_lead_one_way():
     graph = nx.DiGraph([(0, 1), (1, 2), (0, 2), (2, 3), (3, 0)])
     result = rinow.graph_curvature(graph, kind="haantjes")
     values = {tuple(e): v for e, v in zip(result.edge_index.tolist(), result.edges, strict=True)}

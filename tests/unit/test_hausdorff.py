@@ -69,7 +69,7 @@ def test_unit_and_position_do_not_matter():
 # ------------------------------------------------------------------ surfaces
 
 
-def test_parallel_squares():
+def test_parallel_squares_are_at_the_distance_of_their_planes():
     result = check((SQUARE, HALVES), (SQUARE + np.array([0, 0, 0.125]), HALVES), 0.125)
     assert result.distances_a.tolist() == [0.125] * 4
 

@@ -129,7 +129,7 @@ def test_mesh_with_loose_vertices_is_its_used_vertices():
     assert set(result.correspondence[:, 1]) == set(range(1, 10))
 
 
-def test_mesh_in_two_parts():
+def test_meshes_in_two_parts_are_refused():
     V, F = grid(3)
     two = np.concatenate([V, V + 5]), np.concatenate([F, F + 9])
     for name, pair in (("X", (two, [[0.0]])), ("Y", ([[0.0]], two))):

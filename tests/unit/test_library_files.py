@@ -86,7 +86,7 @@ def test_freesurfer_is_known_by_its_first_bytes(tmp_path):
         (b"\x00\x00\x01", "does not start like a FreeSurfer surface"),
     ],
 )
-def test_freesurfer_faults(tmp_path, content, fault):
+def test_faults_of_freesurfer_are_named(tmp_path, content, fault):
     (tmp_path / "lh.pial").write_bytes(content)
     with pytest.raises(FileFormatError, match=fault):
         rinow.read_mesh(tmp_path / "lh.pial")

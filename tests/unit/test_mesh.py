@@ -178,7 +178,7 @@ def test_bad_input_names_the_place(vertices, faces, message):
         ([[1.0, 1, 1], [1, 1.5, 1]], "common edge the lengths 1 and 1.5"),
     ],
 )
-def test_bad_edge_lengths(lengths, message):
+def test_faults_of_edge_lengths_are_named(lengths, message):
     with pytest.raises(InvalidMeshError, match=message):
         IntrinsicMesh([[0, 1, 2], [1, 3, 2]], lengths)
 

@@ -171,7 +171,7 @@ def test_lonely_points_are_isolated():
     assert (far.status == VertexStatus.ISOLATED).all()
 
 
-def test_two_components():
+def test_components_are_spaces_of_their_own():
     D = np.full((61, 61), np.inf)
     D[:30, :30], D[30:60, 30:60], D[60, 60] = sampled(1.0, n=30).distances, sampled(-1.0, n=30).distances, 0
     graph = nx.Graph()

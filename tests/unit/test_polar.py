@@ -75,7 +75,7 @@ def test_angle_on_a_surface_of_variable_curvature_is_the_limit():
 
 
 @pytest.mark.parametrize("k", [-1.0, 0.0, 1.0])
-def test_polar_coordinates(k):
+def test_polar_coordinates_in_surfaces_of_constant_curvature(k):
     r, theta = scattered()
     D = model(k, r, theta)
     for p1 in (1, 3):

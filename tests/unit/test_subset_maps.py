@@ -71,7 +71,7 @@ def test_one_known_space_costs_the_radius_of_the_other_only():
 
 
 @SLOW
-def test_circle_and_sphere():
+def test_circle_and_sphere_are_more_than_half_apart():
     """S¹ and S² are at distance π/3 (Lim, Mémoli, Smith); 20 points of one and a 24-gon say more than 0.5.
 
     The other half of these points is opposite to them and would say no more.

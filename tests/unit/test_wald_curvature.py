@@ -36,7 +36,7 @@ def rays(k, n_rays=6, n_rings=3, step=0.1):
 
 @pytest.mark.parametrize("k", [-1.0, 0.0, 1.0])
 @pytest.mark.parametrize("n", [5, 7, 20, 60])
-def test_model_surfaces(k, n):
+def test_surfaces_of_constant_curvature_have_it(k, n):
     curvature = wald_curvature(sampled(k, n, seed=7), 0, radius=1.0)
     # A share of 1e-12 in the distances and a condition of 100 to 1000.
     assert curvature.value == pytest.approx(k, abs=1e-8)
