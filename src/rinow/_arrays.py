@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
-from rinow.errors import InvalidInputError, NotAMetricError
+from rinow.errors import InvalidInputError, InvalidMeshError, NotAMetricError
 
 __all__ = [
     "as_distance_matrix",
     "as_distances",
+    "as_faces",
     "as_floats",
     "as_index",
     "as_index_tuples",
@@ -124,6 +125,20 @@ def as_index_tuples(values: ArrayLike, *, width: int, n_points: int, name: str) 
     if array.ndim != 2 or array.shape[1] != width:
         raise InvalidInputError(f"{name} has shape {array.shape}; give {width} indices per row, shape (n, {width}).")
     return as_indices(array, n_points, name)
+
+
+def as_faces(faces: ArrayLike, n_vertices: int | None) -> Indices:
+    """Faces as a private, read-only copy with every index in range."""
+    n = np.iinfo(np.intp).max if n_vertices is None else n_vertices
+    array = np.asarray(faces)
+    if array.size == 0:
+        raise InvalidMeshError(
+            "faces is empty; a mesh has at least one face (point clouds have point_cloud_curvature)."
+        )
+    if array.ndim == 2 and array.shape[1] == 4:
+        raise InvalidMeshError(f"faces has shape {array.shape}; split quadrilaterals into triangles first.")
+    F = as_index_tuples(array, width=3, n_points=n, name="faces")
+    return read_only(np.array(F, order="C"))
 
 
 def as_quadruples(quadruples: ArrayLike) -> tuple[tuple[int, ...], Floats]:

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
 from rinow._arrays import (
+    as_faces,
     as_floats,
-    as_index_tuples,
     as_points,
     bounding_box,
     in_safe_unit,
@@ -53,6 +53,14 @@ class IntrinsicMesh(PolyhedralSurface):
         two faces disagree about the length of their common edge.
     InvalidInputError
         If a shape, a type or an index range is wrong.
+
+    Examples
+    --------
+    A regular tetrahedron of edge 1 has the angle 3π/3 at each vertex:
+
+    >>> mesh = IntrinsicMesh([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], np.ones((4, 3)))
+    >>> (mesh.vertex_angle_defects / np.pi).round(9)
+    array([1., 1., 1., 1.])
     """
 
     faces: Indices
@@ -60,7 +68,7 @@ class IntrinsicMesh(PolyhedralSurface):
     n_vertices: int
 
     def __init__(self, faces: ArrayLike, edge_lengths: ArrayLike, n_vertices: int | None = None) -> None:
-        F = _as_faces(faces, n_vertices)
+        F = as_faces(faces, n_vertices)
         L = as_floats(edge_lengths, "edge_lengths").copy()
         if L.shape != F.shape:
             raise InvalidMeshError(f"edge_lengths has shape {L.shape} but faces {F.shape}; give one length per side.")
@@ -117,6 +125,12 @@ class TriangleMesh(PolyhedralSurface):
         If there is no vertex or no face.
     InvalidInputError
         If a shape, a type or an index range is wrong.
+
+    Examples
+    --------
+    >>> square = TriangleMesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> square.n_vertices, square.face_areas.sum(), square.euler_characteristic
+    (4, np.float64(1.0), 1)
     """
 
     vertices: Floats
@@ -141,7 +155,7 @@ class TriangleMesh(PolyhedralSurface):
                     f"vertex_data[{name!r}] has shape {values.shape}; its first length must be n_vertices = {len(V)}."
                 )
         object.__setattr__(self, "vertices", read_only(V))
-        object.__setattr__(self, "faces", _as_faces(faces, len(V)))
+        object.__setattr__(self, "faces", as_faces(faces, len(V)))
         object.__setattr__(self, "vertex_data", MappingProxyType(data))
         object.__setattr__(self, "notes", tuple(notes))
 
@@ -213,7 +227,7 @@ class TriangleMesh(PolyhedralSurface):
         return bool(t.partners.max() < 0 and t.face_used.sum() > 1 and t.edge_is_manifold.all())
 
     def welded(self, *, rtol: float = tolerances.WELD_DISTANCE) -> tuple[TriangleMesh, Indices]:
-        """Merge vertices closer than ``rtol`` times the diagonal of the bounding box.
+        """Merge vertices closer than a share `rtol` of the diagonal of the bounding box.
 
         Returns
         -------
@@ -235,20 +249,6 @@ def _as_mapping(vertex_data: Any) -> Mapping[str, ArrayLike]:
         return vertex_data or {}
     kind = type(vertex_data).__name__
     raise InvalidInputError(f"vertex_data is of type {kind}; give a mapping of names to arrays.")
-
-
-def _as_faces(faces: ArrayLike, n_vertices: int | None) -> Indices:
-    """Faces as a private, read-only copy with every index in range."""
-    n = np.iinfo(np.intp).max if n_vertices is None else n_vertices
-    array = np.asarray(faces)
-    if array.size == 0:
-        raise InvalidMeshError(
-            "faces is empty; a mesh has at least one face (point clouds have point_cloud_curvature)."
-        )
-    if array.ndim == 2 and array.shape[1] == 4:
-        raise InvalidMeshError(f"faces has shape {array.shape}; split quadrilaterals into triangles first.")
-    F = as_index_tuples(array, width=3, n_points=n, name="faces")
-    return read_only(np.array(F, order="C"))
 
 
 def is_mesh_like(value: Any) -> bool:
