@@ -177,10 +177,10 @@ def crease_lines_of(turnings: EdgeTurnings) -> CreaseLines:
     candidates = np.flatnonzero((np.abs(theta) >= least) | flat)
     ends = np.where(turnings.ends_facet, creases.END, _ends_of_sections(theta, turnings.noise)).astype(np.int8)
     is_crease, jumps, errors = np.zeros(len(theta), np.bool_), theta, theta
-    for is_last in (False, True):
+    for _ in range(2):
         jumps, errors = turnings.jumps(candidates, ends)
         strong, weak = _evidence(theta, jumps, errors)
-        is_crease = _linked(turnings, strong, weak, jumps, errors, is_last)
+        is_crease = _linked(turnings, strong, weak, jumps, errors)
         certain = is_crease | turnings.ends_facet
         ends = np.where(certain, creases.END, np.minimum(ends, creases.END_STRAIGHT)).astype(np.int8)
     degrees, turns = np.empty(mesh.n_vertices, np.intp), np.empty(mesh.n_vertices)
@@ -215,7 +215,7 @@ def _evidence(theta: Floats, jumps: Floats, errors: Floats) -> tuple[Bools, Bool
     return strong, weak
 
 
-def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, jumps: Floats, errors: Floats, between: bool) -> Bools:
+def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, jumps: Floats, errors: Floats) -> Bools:
     """Lines of strong edges continued by weak ones, without whiskers, doubled edges and crumbs.
 
     A crease is convex or concave all along, while lines of slivers bend to and fro: long is what is so with one sign.
@@ -236,11 +236,10 @@ def _linked(turnings: EdgeTurnings, strong: Bools, weak: Bools, jumps: Floats, e
     labels = [crease_lines.line_components(side, t.edges, mesh.n_vertices) for side in sides]
     lines = [_long_lines(side, label, strong, mesh.n_vertices) for side, label in zip(sides, labels, strict=True)]
     found = lines[0] | lines[1]
-    if between:
-        on_line = np.zeros(mesh.n_vertices, np.bool_)
-        on_line[t.edges[found]] = True
-        for side, label in zip(sides, labels, strict=True):
-            found |= _between(side, label, t.edges, on_line)
+    on_line = np.zeros(mesh.n_vertices, np.bool_)
+    on_line[t.edges[found]] = True
+    for side, label in zip(sides, labels, strict=True):
+        found |= _between(side, label, t.edges, on_line)
     return found
 
 
