@@ -14,9 +14,9 @@ from rinow.kernels import patch_driver, patch_fits
 PITCH = 0.6
 
 
-def helicoid(n=1600):
+def helicoid(n=1600, seed=21):
     """A minimal surface: errors of H that leave K alone are all that H has."""
-    patch = shapes.open_patch(n, seed=21)
+    patch = shapes.open_patch(n, seed=seed)
     u, v = patch.vertices[:, :2].T
     points = np.column_stack([v * np.cos(2 * u), v * np.sin(2 * u), 2 * PITCH * u])
     return shapes.Shape(points, patch.faces, -((PITCH / (PITCH**2 + v**2)) ** 2), np.zeros(n))
@@ -51,6 +51,12 @@ def test_choices_at_a_boundary_are_as_good_as_one_radius_for_all(surface, noise)
     # samples have 0.2 to 5 times its error.  By K alone H of the helicoid has 4 to 9 times its error.
     for found in ratios.values():
         assert (np.exp(np.mean(np.log(found), axis=0)) < 3.0).all()
+
+
+def test_the_worst_of_few_patches_does_not_decide():
+    # Measured 0.0132; 0.0211 where patches weigh as inside, by the square root of their risk.
+    errors = [errors_at_boundary(helicoid(900, seed))[0] for seed in range(31, 39)]
+    assert np.exp(np.mean(np.log(errors))) < 0.017
 
 
 @pytest.mark.parametrize(("noise", "most"), [(0.005, 0.1), (0.02, 0.18)])

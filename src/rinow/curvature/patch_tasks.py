@@ -24,7 +24,7 @@ VALUES_PER_TASK = 200_000
 ADDING = 8
 """Pieces that vertices are cut into when values are added."""
 NO_FRAMES = np.empty((0, 11))
-NO_PATCHES = patch_driver.Patches(np.empty(0), np.empty(0), 0.0, np.empty(0, np.int32), np.empty((0, patches.N_VALUES)))
+NO_PATCHES = patch_driver.Patches(*np.empty((3, 0)), np.empty(0, np.int32), np.empty((0, patches.N_VALUES)))
 
 
 @dataclass
@@ -100,7 +100,7 @@ def _frames_of(fitting: Fitting, part: slice) -> Floats:
 
 
 def add_patches(
-    fitting: Fitting, cores: Floats, risks: Floats, power: float, totals: Floats, tasks: Tasks, share: float
+    fitting: Fitting, cores: Floats, risks: Floats, weights: Floats, totals: Floats, tasks: Tasks, share: float
 ) -> None:
     """Add the weighted values of all patches to the totals of their vertices, in the order of the centres."""
     rows = fitting.centres.rows
@@ -110,16 +110,16 @@ def add_patches(
         last = int(np.searchsorted(rows, rows[first] + VALUES_PER_TASK, "right")) - 1
         parts.append(slice(first, min(max(last, first + 1), len(cores))))
         first = parts[-1].stop
-    for _, (vertices, values) in tasks.run(partial(_values_of, fitting, cores, risks, power), parts, share):
+    for _, (vertices, values) in tasks.run(partial(_values_of, fitting, cores, risks, weights), parts, share):
         patches.add_values(vertices, values, ADDING, totals)
         del vertices, values
 
 
-def _values_of(fitting: Fitting, cores: Floats, risks: Floats, power: float, part: slice) -> tuple[Any, Floats]:
+def _values_of(fitting: Fitting, cores: Floats, risks: Floats, weights: Floats, part: slice) -> tuple[Any, Floats]:
     rows = fitting.centres.rows
     n = rows[part.stop] - rows[part.start]
     vertices, values = np.empty(n, np.int32), np.empty((n, patches.N_VALUES))
-    out = patch_driver.Patches(cores[part], risks[part], power, vertices, values)
+    out = patch_driver.Patches(cores[part], risks[part], weights[part], vertices, values)
     fitting.of(part, _empty_tables(0, True), NO_FRAMES, out)
     return vertices, values
 

@@ -40,6 +40,8 @@ QUARTIC = 3
 """Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
 PASSES = 2
 """Averages of squared differences over the centres around."""
+EDGE_POWER = 1.5
+"""`Quality.power` beside a boundary, where few patches cover a vertex and their errors differ much."""
 EDGE_CALIBRATION = 1.8
 """`Quality.calibration` at a boundary, where patches of any quality choose their order and radius by themselves."""
 OF_GAUSSIAN = 0.8
@@ -199,10 +201,13 @@ def blended_patches(
     high = high[centres] + np.where(beside, EDGE_RADII, 0)
     window = *_widened(low[centres], high, top[centres], len(ladder.reaches)), at_centres
     del between, low, top, logs, pilot, torus, plane  # the searches need the memory
+    best = np.ones(len(centres))
     for search, is_own in ((INSIDE, ~beside & quality.selects), (BESIDE, beside)):
         if is_own.any():
             own = slice(None) if is_own.all() else np.flatnonzero(is_own)  # a view of all centres costs no memory
-            _look(search, own, sheet, ladder, centres, core, window, frames, curvedness, choice, tasks)
+            links = _look(search, own, sheet, ladder, centres, core, window, frames, curvedness, choice, tasks)
+            if search is BESIDE:
+                best[own] = _least_over_own(choice.risk[own], links)
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
@@ -210,7 +215,8 @@ def blended_patches(
         patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
     )
     expected = in_half_octaves(choice.risk, sheet.spacing[centres] ** -4)
-    add_patches(fitting, CORE * core, expected, quality.power, totals, tasks, 0.2)
+    weights = expected**-quality.power * in_half_octaves(best, np.ones(1)) ** (EDGE_POWER - quality.power)
+    add_patches(fitting, CORE * core, expected, weights, totals, tasks, 0.2)
     out, direction1, direction2 = np.empty((len(totals), 6)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
     patches.mean_values(totals, sheet.normals, out, direction1, direction2)
     return out, direction1, direction2, noise
@@ -238,8 +244,8 @@ def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
 def _look(
     search: Search, own: slice | NDArray[np.intp], sheet: balls.Sheet, ladder: Ladder, centres: Ints, core: Floats,
     window: tuple[Ints, Ints, Ints, Floats], frames: Floats, curvedness: Floats, choice: Choice, tasks: Tasks,
-) -> None:  # fmt: skip
-    """Let some of the centres choose by themselves, in place."""
+) -> tuple[Ints, Ints]:  # fmt: skip
+    """Let some of the centres choose by themselves, in place; the centres around each, in compressed rows."""
     few = centres[own]
     low, high, top, noise = window[0][own], window[1][own], window[2][own], window[3][own]
     links = members_of_discs(sheet, few, few, search.around * core[own])
@@ -255,6 +261,13 @@ def _look(
         low = np.where(has_fit, np.maximum(low, found.radius - NARROW), low)
         high = np.where(has_fit, np.minimum(high, found.radius + NARROW), high)
     tasks.part = 1.0
+    return links
+
+
+def _least_over_own(risk: Floats, links: tuple[Ints, Ints]) -> Floats:
+    """The least risk of the centres around each over its own, where that is finite."""
+    with np.errstate(invalid="ignore"):
+        return np.minimum.reduceat(risk[links[1]], links[0][:-1]) / risk
 
 
 def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints, Ints]:

@@ -33,11 +33,11 @@ class Centres(NamedTuple):
 
 
 class Patches(NamedTuple):
-    """Radii of cores (n,), risks (n,), the power of a risk in a weight, and the values (m, N) at vertices (m,)."""
+    """Radii of cores (n,), risks (n,) and weights (n,), and the values (m, N) at vertices (m,)."""
 
     cores: np.ndarray
     risks: np.ndarray
-    power: float
+    weights: np.ndarray
     vertices: np.ndarray
     values: np.ndarray
 
@@ -85,7 +85,7 @@ def treat(i, task, errors_of, reaches, centres, sheet, tables, frames, out, work
         if task == FRAMES and top >= 2:
             patches.write_frame(fit.jets[top], spacing, frame, frames[i])
         elif top >= 2:
-            patch = patches.Patch(out.cores[i], centres.noise[i], out.risks[i], out.power, order)
+            patch = patches.Patch(out.cores[i], centres.noise[i], out.risks[i], out.weights[i], order)
             patches.write_patch(
                 start, stop, size, top, asked, own[-1], frame, patch, fit, sheet, ball, work.coefficients,
                 out.vertices, out.values,

@@ -27,12 +27,12 @@ N_VALUES = 15
 
 
 class Patch(NamedTuple):
-    """What is known of one patch: radius of its core, noise, risk, power of the risk in its weight, order."""
+    """What is known of one patch: radius of its core, noise, risk, weight, order."""
 
     core: float
     noise: float
     risk: float
-    power: float
+    weight: float
     order: int
 
 
@@ -170,7 +170,7 @@ def write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, 
     at_centre, is_crowded, inside = c[0] + c[3] + c[5], size < ROOMY * TERMS[order], -1
     if is_crowded:
         bends.bend_variances(points, size, core, reach, order, fit)
-    most = patch.risk ** (-patch.power) * (1.0 if order >= patch.order else FALLEN)
+    most = patch.weight * (1.0 if order >= patch.order else FALLEN)
     for j in range(size):
         u, v, q = points[0, j], points[1, j], ball.members[j]
         s = u * u + v * v
