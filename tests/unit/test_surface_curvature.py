@@ -361,8 +361,8 @@ def test_notes_name_the_faults():
     turned = F.copy()
     turned[3] = turned[3, ::-1]
     notes = surface_curvature((V, np.concatenate([turned, [[1, 1, 2]]]))).notes
-    assert notes[0].startswith(f"1 of {len(F) + 1} faces take no part")
-    assert notes[1].startswith("1 faces were turned")
+    assert notes[0].startswith(f"1 of {len(F) + 1} faces takes no part")
+    assert notes[1].startswith("1 face was turned to agree with its neighbours")
     patch = shapes.open_patch(200)
     twice = np.concatenate([patch.vertices] * 2), np.concatenate([patch.faces, patch.faces + len(patch.vertices)])
     covered = surface_curvature(twice, method="angle_defect")
@@ -381,6 +381,7 @@ def test_auto_takes_the_best_method_the_data_allow():
     assert surface_curvature(mesh).method == "auto"
     assert surface_curvature(mesh, quality="fast").method == "auto"
     assert surface_curvature(mesh.intrinsic()).method == "intrinsic"
+    assert surface_curvature(mesh.intrinsic(), quality="fast").method == "intrinsic"
 
 
 def test_meshes_of_other_libraries():
@@ -398,6 +399,10 @@ def test_meshes_of_other_libraries():
         ({"method": "sectional", "radius": [1.0, 2.0]}, "is not a positive length"),
         ({"method": "sectional", "radius": "big"}, "radius has type"),
         ({"method": "lifted", "radius": 1.0}, "radius = 1.0 is not for method 'lifted'"),
+        *(
+            ({"method": m, "quality": "fast"}, f"quality = 'fast' is not for method '{m}', which has none; leave")
+            for m in ("lifted", "intrinsic", "wald", "robinson", "angle_defect")
+        ),
     ],
 )
 def test_wrong_options(options, message):
