@@ -221,9 +221,7 @@ def _chosen_method(method: str, quality: str, mesh: TriangleMesh | IntrinsicMesh
         if value not in allowed:
             raise InvalidInputError(f"{name} = {value!r} is unknown; choose from {', '.join(allowed)}.")
     if quality != "best" and method not in WITH_QUALITY:
-        raise InvalidInputError(
-            f"quality = {quality!r} is not for method {method!r}, which has none; leave it out."
-        )
+        raise InvalidInputError(f"quality = {quality!r} is not for method {method!r}, which has none; leave it out.")
     return "intrinsic" if method == "auto" and isinstance(mesh, IntrinsicMesh) else method
 
 
