@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from rinow import tolerances
 from rinow._printing import counted
+from rinow.curvature.split_edges import position_rounding
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = [
@@ -19,6 +20,9 @@ __all__ = [
     "sheet_notes",
     "weld_notes",
 ]
+
+ROUNDED = 0.002
+"""Share of the mean edge from which on the rounding of coordinates is told: its noise is one percent of K then."""
 
 
 def weld_notes(before: int, after: int) -> tuple[str, ...]:
@@ -109,6 +113,7 @@ def mesh_notes(mesh: TriangleMesh | IntrinsicMesh, *, oriented: bool) -> tuple[s
         what = f"{n_unused} of {counted(mesh.n_faces, 'face', 'faces')} {'takes' if n_unused == 1 else 'take'} no part"
         notes.append(f"{what}: a repeated vertex or an undefined length.")
     if isinstance(mesh, TriangleMesh):
+        notes += _rounding_notes(mesh)
         n_seam = _seam_size(mesh)
         if n_seam:
             where = "where sheets cover each other or more than two edges meet"
@@ -116,6 +121,18 @@ def mesh_notes(mesh: TriangleMesh | IntrinsicMesh, *, oriented: bool) -> tuple[s
         if oriented:
             notes += _orientation_notes(mesh)
     return tuple(notes)
+
+
+def _rounding_notes(mesh: TriangleMesh) -> list[str]:
+    """Coordinates that are so large that their rounding is noise."""
+    lengths = mesh.edge_lengths[mesh.topology.face_used]
+    share = position_rounding(mesh) / float(np.mean(lengths)) if lengths.any() else 0.0
+    if not ROUNDED < share < np.inf:
+        return []
+    return [
+        f"The coordinates are rounded by up to {share:.1%} of the mean edge, which is noise of the curvature: they are "
+        "far larger than the mesh; move it to the origin before its coordinates are rounded."
+    ]
 
 
 def _seam_size(mesh: TriangleMesh) -> int:
