@@ -342,3 +342,13 @@ def test_needles_do_not_turn_what_lies_beyond_them(gap, face):
     found = surface_curvature((W, np.concatenate([F[~beside], split])), method="intrinsic").gaussian[:new]
     clean = surface_curvature((V, F), method="intrinsic").gaussian
     assert np.abs(found - shape.gaussian).max() < 1.2 * np.abs(clean - shape.gaussian).max()
+
+
+def test_narrow_strips_have_a_spread_that_says_what_averages_leave():
+    # K falls by a quarter from the middle of the band to its rims, all of which are near to every vertex.
+    torus = shapes.irregular_torus(900)
+    V, F = torus.vertices, torus.faces
+    band = np.abs(V[F].mean(axis=1)[:, 2]) < 2.2 * TriangleMesh(V, F).mean_edge_length
+    c = surface_curvature((V, F[band]), method="intrinsic")
+    ok = c.status == VertexStatus.OK
+    assert np.mean(np.abs(c.gaussian - torus.gaussian)[ok] < 3 * c.spread[ok]) > 0.95

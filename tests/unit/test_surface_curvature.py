@@ -376,6 +376,14 @@ def test_notes_name_the_faults():
 # ------------------------------------------------------------------ interface
 
 
+@pytest.mark.parametrize("method", ["wald", "angle_defect"])
+def test_a_value_without_others_beside_it_has_a_spread(method):
+    c = curvature(shapes.cone(12, 1), method=method)  # all but the apex are at the boundary
+    assert c.status[0] == VertexStatus.OK
+    assert c.spread[0] == abs(c.gaussian[0]) > 0.0
+    assert np.isnan(c.spread[1:]).all()
+
+
 def test_auto_takes_the_best_method_the_data_allow():
     mesh = TriangleMesh(SPHERE.vertices, SPHERE.faces)
     assert surface_curvature(mesh).method == "auto"
