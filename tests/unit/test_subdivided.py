@@ -127,6 +127,23 @@ def grid(n_u, n_v, places, *, closed=False):
     return V, np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
 
 
+def half_cylinder():
+    """An irregular mesh of a half cylinder; its straight sides are rulings."""
+    n_u, n_v = 30, 20
+    i, j = np.indices((n_u, n_v)).reshape(2, -1)
+    rng = np.random.default_rng(7)
+    inner = (i > 0) & (i < n_u - 1) & (j > 0) & (j < n_v - 1)
+    u, v = np.array([i, j]) + np.where(inner, rng.uniform(-0.3, 0.3, (2, len(i))), 0.0)
+    a = (np.arange(n_u - 1)[:, None] * n_v + np.arange(n_v - 1)).ravel()
+    b, c, d = a + n_v, a + n_v + 1, a + 1
+    turn = rng.random(len(a)) < 0.5
+    faces = [np.where(turn, x, y) for x, y in ((a, a), (b, b), (d, c), (b, a), (c, c), (d, d))]
+    u *= np.pi / (n_u - 1)
+    return np.stack([np.cos(u), np.sin(u), 0.1 * v], axis=1), np.concatenate(
+        np.array(faces).reshape(2, 3, -1), axis=1
+    ).T
+
+
 TURN = 2 * np.pi
 KEPT = {
     "plane": grid(12, 12, lambda u, v: (u, v, 0.0)),
@@ -145,6 +162,7 @@ KEPT = {
     ),
     "plateau": grid(41, 41, lambda u, v: (u, v, np.maximum(0.05, 0.1 * np.sin(TURN * u) * np.cos(TURN * v)))),
     "box": shapes.box(4)[:2],
+    "half_cylinder": half_cylinder(),
 }
 
 

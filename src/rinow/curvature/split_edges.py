@@ -129,14 +129,15 @@ class SplitEdges:
             steps[on] += 1
         ends = end.reshape(-1, 2)
         is_whole = (row[ends] < 0).all(axis=1) & (steps.reshape(-1, 2).sum(axis=1) <= LONGEST + 1)
-        goes_on = self._goes_on(end, last).reshape(-1, 2) | ~is_inner[ends]
+        is_longer = self._goes_on(end, last).reshape(-1, 2)
+        goes_on = is_longer | ~is_inner[ends]
         is_edge = is_whole & ~goes_on.all(axis=1) & self._is_corner[ends].all(axis=1)
         known = self._ends_whole_edges(row < 0)
         known[ends[is_edge]] = True
         to_rim = mesh.topology.vertex_is_boundary[ends]  # from an end that other edges tell to be one
         is_edge |= is_whole & ~goes_on.all(axis=1) & (to_rim.sum(axis=1) == 1) & (known[ends] | to_rim).all(axis=1)
         known[middle[is_edge]] = True
-        is_edge |= is_whole & self._beside(known, middle, ends)
+        is_edge |= is_whole & ~is_longer.any(axis=1) & self._beside(known, middle, ends)
         rows = np.flatnonzero(is_edge)
         self.on_edges[middle[rows]] = True
         self.ends[middle[rows]] = ends[rows]
