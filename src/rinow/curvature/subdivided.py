@@ -56,7 +56,7 @@ def coarser(mesh: TriangleMesh) -> Coarser | None:
         return None
     inside = split.inside & mesh.topology.vertex_is_manifold & ~mesh.topology.vertex_is_boundary
     facet = _facets(mesh, split.bends)
-    rows = np.unique(np.column_stack([np.repeat(facet, 3), mesh.faces.ravel()])[np.repeat(facet, 3) >= 0], axis=0)
+    rows = _vertices_of(facet, mesh.faces, on_edge)
     for _ in range(LONGEST):
         own = rows[~(on_edge | inside)[rows[:, 1]]]
         whole = _in_whole_facets(mesh, rows, split, on_edge, own)
@@ -89,6 +89,15 @@ def _facets(mesh: TriangleMesh, bends: Bools) -> Indices:
     h = t.edge_halfedges[~bends]
     facet = clusters(mesh.n_faces, np.stack([h // 3, t.partners[h] // 3], axis=1))[1]
     return np.where(t.face_used, facet, -1)
+
+
+def _vertices_of(facet: Indices, faces: Indices, on_edge: Bools) -> Indices:
+    """(k, 2): facets that have a vertex on an edge, ascending, with each of their vertices."""
+    has_any = np.zeros(len(faces) + 1, np.bool_)
+    has_any[facet[on_edge[faces].any(axis=1)]] = True
+    concerned = has_any[facet] & (facet >= 0)
+    keys = np.sort(facet[concerned, None] * len(on_edge) + faces[concerned], axis=None)
+    return np.stack(np.divmod(keys[np.diff(keys, prepend=-1) > 0], len(on_edge)), axis=1)
 
 
 def _in_whole_facets(mesh: TriangleMesh, rows: Indices, split: SplitEdges, on_edge: Bools, own: Indices) -> Bools:
