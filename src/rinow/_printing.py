@@ -1,4 +1,4 @@
-"""How results and meshes print: one line, numbers as they are, long arrays by their shape."""
+"""How results and meshes print: one line, numbers as they are, long arrays by their shape; counts in words."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
-__all__ = ["OneLine"]
+__all__ = ["OneLine", "counted"]
 
 MOST_NUMBERS = 6
 """Longer arrays are printed by their shape."""
@@ -37,3 +37,8 @@ def _brief(value: Any) -> str:
         return repr(value.tolist())
     kind = value.dtype.type.__name__.rstrip("_") if isinstance(value, np.ndarray) else type(value).__name__
     return f"<{kind} {' x '.join(map(str, shape))}>"
+
+
+def counted(n: int, one: str, many: str) -> str:
+    """A number, and what it counts: the words for one, or those for any other number."""
+    return f"{n} {one if n == 1 else many}"

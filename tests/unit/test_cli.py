@@ -195,6 +195,11 @@ def test_a_bad_output_is_refused_before_anything_is_computed(folder, capsys, out
     assert (folder / "in.ply").read_bytes() == original
 
 
+def test_a_quality_without_effect_is_refused_in_one_sentence(folder, capsys):
+    assert main(["curvature", "in.ply", "--method", "wald", "--quality", "fast"]) == 1
+    assert capsys.readouterr().err.count("quality = 'fast' is not for method 'wald'") == 1
+
+
 @pytest.mark.parametrize("radius", ["0", "-1", "nan", "inf"])
 def test_a_bad_radius_is_one_sentence(folder, capsys, radius):
     assert main(["curvature", "in.ply", "--method", "sectional", "--radius", radius]) == 1

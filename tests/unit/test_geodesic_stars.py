@@ -127,9 +127,10 @@ def half(shape, axis):
     [half(shapes.icosphere(3), 2), half(shapes.irregular_sphere(1000), 2), half(shapes.irregular_torus(1500), 0)],
     ids=["icosphere", "sphere", "torus"],
 )
-def test_beside_a_boundary_robinson_takes_the_curvature_from_farther_inside(shape):
-    c = curvature(shape, "robinson")
+@pytest.mark.parametrize("method", METHODS)
+def test_beside_a_boundary_the_curvature_is_taken_from_farther_inside(shape, method):
     mesh = TriangleMesh(shape.vertices, shape.faces)
+    c = curvature(shape, method, None if method == "robinson" else 3 * mesh.mean_edge_length)
     inside = ~mesh.topology.vertex_is_boundary
     assert (c.status[inside] == VertexStatus.OK).all()
     at_rim = np.unique(mesh.faces[mesh.topology.vertex_is_boundary[mesh.faces].any(axis=1)])

@@ -325,3 +325,30 @@ def test_curvature_of_lengths_does_not_know_the_orientation_of_faces(make):
     expected, found = (intrinsic_curvature(TriangleMesh(shape.vertices, faces)) for faces in (shape.faces, turned))
     np.testing.assert_allclose(found.gaussian, expected.gaussian, rtol=0, atol=1e-9 * np.max(np.abs(expected.gaussian)))
     np.testing.assert_allclose(found.on_arcs, expected.on_arcs, atol=1e-9)
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("face", [10, 200, 500])
+def test_needles_do_not_turn_what_lies_beyond_them(gap, face):
+    # A vertex beside another one: the side of an edge that it is on, and the direction to it, are lost in the plane.
+    shape = shapes.irregular_ellipsoid(1500)
+    V, F = shape.vertices, shape.faces
+    mesh, (a, b) = TriangleMesh(V, F), F[face, :2]
+    step = gap * (V[a] - V[b])
+    new, normal = len(V), mesh.vertex_normals[b]
+    beside = (a == F).any(axis=1) & (b == F).any(axis=1)
+    split = np.concatenate([np.where(F[beside] == end, new, F[beside]) for end in (a, b)])
+    W = np.concatenate([V, [V[b] + step - (step @ normal) * normal]])
+    found = surface_curvature((W, np.concatenate([F[~beside], split])), method="intrinsic").gaussian[:new]
+    clean = surface_curvature((V, F), method="intrinsic").gaussian
+    assert np.abs(found - shape.gaussian).max() < 1.2 * np.abs(clean - shape.gaussian).max()
+
+
+def test_narrow_strips_have_a_spread_that_says_what_averages_leave():
+    # K falls by a quarter from the middle of the band to its rims, all of which are near to every vertex.
+    torus = shapes.irregular_torus(900)
+    V, F = torus.vertices, torus.faces
+    band = np.abs(V[F].mean(axis=1)[:, 2]) < 2.2 * TriangleMesh(V, F).mean_edge_length
+    c = surface_curvature((V, F[band]), method="intrinsic")
+    ok = c.status == VertexStatus.OK
+    assert np.mean(np.abs(c.gaussian - torus.gaussian)[ok] < 3 * c.spread[ok]) > 0.95

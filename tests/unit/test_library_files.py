@@ -122,7 +122,7 @@ def test_a_scene_is_joined_in_the_order_of_its_parts(tmp_path):
     np.testing.assert_array_equal(mesh.vertices, np.concatenate([V, V + np.array([8, 0, 0])]))
     np.testing.assert_array_equal(mesh.faces, np.concatenate([F, F + 4]))
     assert "2 parts of the scene were joined" in mesh.notes[0]
-    assert mesh.notes[1] == "1 parts of the scene without triangles were left out."
+    assert mesh.notes[1] == "1 part of the scene without triangles was left out."
 
 
 # ------------------------------------------------------------------ VTK

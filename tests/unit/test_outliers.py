@@ -39,7 +39,7 @@ def test_a_vertex_that_was_moved_changes_no_other_value(way, height, aside):
     assert (c.status == VertexStatus.OK).all()
     around = MESH.topology.neighbours[MESH.topology.neighbour_offsets[300] : MESH.topology.neighbour_offsets[301]]
     assert c.gaussian[300] in c.gaussian[around]
-    assert any(note.startswith("1 vertices were left out") for note in c.notes)
+    assert any(note.startswith("1 vertex was left out") for note in c.notes)
 
 
 def test_without_it_the_curvature_is_as_good_as_that_of_the_whole():

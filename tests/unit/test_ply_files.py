@@ -82,8 +82,8 @@ def test_faces_may_come_first_and_polygons_are_reported(read, form):
     polygons = [[0, 1, 3, 2], [0, 1], [0, 1, 2]]
     mesh = read(naive.encode(form, [("face", CORNERS, [[p] for p in polygons]), ("vertex", AXES, square)]))
     assert mesh.faces.tolist() == [[0, 1, 3], [0, 3, 2], [0, 1, 2]]
-    assert mesh.notes[0].startswith("1 faces with more than three corners were split")
-    assert mesh.notes[1] == "1 faces with fewer than three corners were left out."
+    assert mesh.notes[0].startswith("1 face with more than three corners was split")
+    assert mesh.notes[1] == "1 face with fewer than three corners was left out."
 
 
 @pytest.mark.parametrize("form", FORMATS)

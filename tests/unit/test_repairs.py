@@ -40,7 +40,9 @@ def test_faces_listed_twice_count_once(way, turned):
         again = F[rows][:, ::-1] if turned else F[rows]
         c = surface_curvature((V, np.concatenate([F, again])), **options)
         same(c, clean)
-        assert c.notes[0] == f"{len(rows)} faces have the same vertices as another one, and were left out."
+        what = "face has" if len(rows) == 1 else "faces have"
+        were = "was" if len(rows) == 1 else "were"
+        assert c.notes[0] == f"{len(rows)} {what} the same vertices as another one, and {were} left out."
 
 
 def test_seams_are_closed(way):
@@ -112,7 +114,7 @@ def test_fins_are_left_out(way):
         np.testing.assert_array_equal(c.gaussian[:-1], clean.gaussian)
         assert np.isnan(c.gaussian[-1])
         assert (c.status[[a, b]] == VertexStatus.NONMANIFOLD).all()
-        assert "1 faces stand on an edge of two others and were left out." in c.notes
+        assert "1 face stands on an edge of two others and was left out." in c.notes
 
 
 def test_single_faces_around_one_edge_stay():
@@ -131,7 +133,7 @@ def test_surfaces_that_touch_at_a_vertex_do_not_see_each_other(way):
     c = surface_curvature((np.concatenate([V, 2 * V[v] - V]), np.concatenate([F, new[F[:, ::-1]]])), **options)
     np.testing.assert_allclose(c.gaussian[: len(V)], clean.gaussian, rtol=1e-8)
     assert c.status[v] == VertexStatus.NONMANIFOLD
-    assert any(note.startswith("At 1 vertices sheets of the surface meet") for note in c.notes)
+    assert any(note.startswith("At 1 vertex sheets of the surface meet") for note in c.notes)
 
 
 @pytest.mark.parametrize("quality", ["best", "fast"])

@@ -361,8 +361,8 @@ def test_notes_name_the_faults():
     turned = F.copy()
     turned[3] = turned[3, ::-1]
     notes = surface_curvature((V, np.concatenate([turned, [[1, 1, 2]]]))).notes
-    assert notes[0].startswith(f"1 of {len(F) + 1} faces take no part")
-    assert notes[1].startswith("1 faces were turned")
+    assert notes[0].startswith(f"1 of {len(F) + 1} faces takes no part")
+    assert notes[1].startswith("1 face was turned to agree with its neighbours")
     patch = shapes.open_patch(200)
     twice = np.concatenate([patch.vertices] * 2), np.concatenate([patch.faces, patch.faces + len(patch.vertices)])
     covered = surface_curvature(twice, method="angle_defect")
@@ -376,11 +376,20 @@ def test_notes_name_the_faults():
 # ------------------------------------------------------------------ interface
 
 
+@pytest.mark.parametrize("method", ["wald", "angle_defect"])
+def test_a_value_without_others_beside_it_has_a_spread(method):
+    c = curvature(shapes.cone(12, 1), method=method)  # all but the apex are at the boundary
+    assert c.status[0] == VertexStatus.OK
+    assert c.spread[0] == abs(c.gaussian[0]) > 0.0
+    assert np.isnan(c.spread[1:]).all()
+
+
 def test_auto_takes_the_best_method_the_data_allow():
     mesh = TriangleMesh(SPHERE.vertices, SPHERE.faces)
     assert surface_curvature(mesh).method == "auto"
     assert surface_curvature(mesh, quality="fast").method == "auto"
     assert surface_curvature(mesh.intrinsic()).method == "intrinsic"
+    assert surface_curvature(mesh.intrinsic(), quality="fast").method == "intrinsic"
 
 
 def test_meshes_of_other_libraries():
@@ -398,6 +407,10 @@ def test_meshes_of_other_libraries():
         ({"method": "sectional", "radius": [1.0, 2.0]}, "is not a positive length"),
         ({"method": "sectional", "radius": "big"}, "radius has type"),
         ({"method": "lifted", "radius": 1.0}, "radius = 1.0 is not for method 'lifted'"),
+        *(
+            ({"method": m, "quality": "fast"}, f"quality = 'fast' is not for method '{m}', which has none; leave")
+            for m in ("lifted", "intrinsic", "wald", "robinson", "angle_defect")
+        ),
     ],
 )
 def test_faults_of_options_are_named(options, message):

@@ -62,8 +62,8 @@ def test_colours_and_weights_after_the_position_are_left_out(read):
 def test_polygons_are_fans(read):
     mesh = read("a.obj", SQUARE + "f 1 2 3 4\nl 1 2\nf 1 2\n")
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
-    assert "1 faces with more than three corners" in mesh.notes[0]
-    assert "1 faces with fewer than three corners" in mesh.notes[1]
+    assert "1 face with more than three corners" in mesh.notes[0]
+    assert "1 face with fewer than three corners" in mesh.notes[1]
 
 
 @pytest.mark.parametrize(
@@ -96,7 +96,7 @@ def test_every_head_of_an_off_file(read, head):
     mesh = read("a.off", head + body)
     assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3], [0, 1, 2]]
-    assert "1 faces with more than three corners" in mesh.notes[0]
+    assert "1 face with more than three corners" in mesh.notes[0]
 
 
 def test_colours_of_vertices_are_left_out(read):

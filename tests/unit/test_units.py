@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import rinow
+import shapes
+from rinow import TriangleMesh, VertexStatus, surface_curvature
 from rinow.errors import InvalidInputError
 from shapes import icosphere
 
@@ -79,3 +81,18 @@ REFUSALS = [
 def test_what_is_no_number_is_refused(action, message):
     with pytest.raises(InvalidInputError, match=f"^{re.escape(message)}"):
         action()
+
+
+@pytest.mark.parametrize("quality", ["best", "fast"])
+def test_single_precision_far_from_the_origin_makes_no_facets(quality):
+    shape = shapes.irregular_ellipsoid(2000)
+    step = TriangleMesh(shape.vertices, shape.faces).mean_edge_length
+    far = (shape.vertices + 8e6 * step).astype(np.float32)  # steps of half to a whole edge
+    c = surface_curvature((far, shape.faces), quality=quality)
+    ok = c.status == VertexStatus.OK
+    error = np.abs(c.gaussian - shape.gaussian)[ok]
+    assert (c.gaussian[ok] == 0.0).sum() == 0
+    assert np.mean(error > np.maximum(4 * c.spread[ok], 0.1 * np.sqrt(np.mean(shape.gaussian**2)))) < 0.01
+    assert any(note.startswith("The coordinates are rounded by up to") for note in c.notes)
+    near = surface_curvature((shape.vertices.astype(np.float32), shape.faces), quality=quality)
+    assert near.notes == ()

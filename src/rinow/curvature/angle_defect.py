@@ -49,9 +49,12 @@ def longest_edges(mesh: TriangleMesh | IntrinsicMesh) -> Floats:
 
 
 def ring_deviations(mesh: TriangleMesh | IntrinsicMesh, values: Floats) -> Floats:
-    """(n_vertices,): standard deviation of the values at each vertex and its neighbours, nan for fewer than two."""
+    """(n_vertices,): standard deviation of the values at a vertex and its neighbours; a value itself if alone."""
     t = mesh.topology
     deviations = np.empty(mesh.n_vertices)
     stars.ring_deviations(values, t.faces, t.corner_offsets, t.vertex_corners, deviations)
-    deviations[~np.isfinite(values)] = np.nan
+    is_known = np.isfinite(values)
+    is_alone = is_known & np.isnan(deviations)
+    deviations[is_alone] = np.abs(values[is_alone])
+    deviations[~is_known] = np.nan
     return deviations

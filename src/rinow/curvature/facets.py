@@ -8,12 +8,17 @@ from numpy.typing import NDArray
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.exact_facets import POSITION_ROUNDING
+from rinow.curvature.split_edges import position_rounding
 from rinow.kernels import facet_stars
 from rinow.mesh import TriangleMesh
 
 __all__ = ["take_facets"]
 
 Floats = NDArray[np.float64]
+
+
+BY_CHANCE = 0.02
+"""Turning of the typical edge, in radians, by rounding of coordinates from which on faces are coplanar by chance."""
 
 
 def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool_]) -> None:
@@ -31,6 +36,8 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool
 
     Notes
     -----
+    Coordinates that are rounded to a share of the spacing, as 32 bits do far from the origin, tell no facets.
+
     Such a star is isometric to a part of the plane, K = 0.  A facet of a prism inscribed in a cylinder of radius R has
     the height h over the edge where it meets the next one; with the angle θ between both,
 
@@ -42,6 +49,9 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool
         return
     rows = np.flatnonzero(mesh.topology.vertex_is_used)
     t, turnings = mesh.topology, EdgeTurnings(mesh)
+    gains = turnings.gains[np.isfinite(turnings.gains)]
+    if len(gains) and position_rounding(mesh) * float(np.median(gains)) > BY_CHANCE:
+        return
     rounding = POSITION_ROUNDING * mesh.diagonal * turnings.gains
     across, lines = np.empty(len(rows)), np.empty(len(rows), np.intp)
     facet_stars.facet_stars(

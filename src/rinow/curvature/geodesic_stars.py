@@ -78,8 +78,9 @@ def geodesic_wald(mesh: TriangleMesh | IntrinsicMesh, radius: float) -> Estimate
     -------
     estimate : Estimate
         `gaussian` is nan at the boundary and at vertices that are not manifold.  Near the boundary the radius is the
-        distance from it, and a vertex with too few others so near has the curvature of its ring.  `spread` is 1.5
-        times the root of the mean square, around each vertex, of the difference from the star of 0.7 times the radius.
+        distance from it; a vertex less than 1.5 spacings from it has the mean of those beside it that are farther
+        away, or, if there are none, the curvature of its ring.  `spread` is 1.5 times the root of the mean square,
+        around each vertex, of the difference from the star of 0.7 times the radius.
 
     Notes
     -----
@@ -91,11 +92,14 @@ def geodesic_wald(mesh: TriangleMesh | IntrinsicMesh, radius: float) -> Estimate
     """
     ring = wald(mesh)
     values, radii = _both(mesh, np.full(mesh.n_vertices, radius), _star_values)
+    flow = CurvatureFlow(mesh)
+    is_cut = (radii < RESOLVED * flow.spacing) & (radii < radius)
     small = np.isfinite(ring.gaussian) & np.isnan(values[0])
     values[0, small] = ring.gaussian[small]
     radii[small] = ring.radius[small]
     estimate = _estimate(mesh, values, radii)
     estimate.spread[small] = np.hypot(ring.spread[small], estimate.spread[small])
+    _take_from_beside(flow, estimate, is_cut & np.isfinite(estimate.gaussian))
     return estimate
 
 

@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow import tolerances
+from rinow._printing import counted
+from rinow.curvature.split_edges import position_rounding
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = [
@@ -18,6 +20,9 @@ __all__ = [
     "sheet_notes",
     "weld_notes",
 ]
+
+ROUNDED = 0.002
+"""Share of the mean edge from which on the rounding of coordinates is told: its noise is one percent of K then."""
 
 
 def weld_notes(before: int, after: int) -> tuple[str, ...]:
@@ -35,8 +40,8 @@ def merge_notes(n_merged: int) -> tuple[str, ...]:
     if not n_merged:
         return ()
     return (
-        f"{n_merged} vertices lie on others, across a seam or an edge without length: those at one place were taken as "
-        "one for the computation, and have the same values.",
+        f"{counted(n_merged, 'vertex lies on another', 'vertices lie on others')}, across a seam or an edge without "
+        "length: those at one place were taken as one for the computation, and have the same values.",
     )
 
 
@@ -44,21 +49,21 @@ def crack_notes(n_cracks: int) -> tuple[str, ...]:
     """What was done about cracks, the two sides of which have different vertices."""
     if not n_cracks:
         return ()
-    return (
-        f"{n_cracks} cracks, where vertices lie on an edge of the faces beside, were closed for the computation: these "
-        "faces were split there.",
-    )
+    where, done = "where vertices lie on an edge of the faces beside", "closed for the computation"
+    what = counted(n_cracks, f"crack, {where}, was", f"cracks, {where}, were")
+    return (f"{what} {done}: these faces were split there.",)
 
 
 def sheet_notes(n_fins: int, n_meet: int) -> tuple[str, ...]:
     """What was done where more than one sheet meets, at so many vertices."""
     notes: tuple[str, ...] = ()
     if n_fins:
-        notes += (f"{n_fins} faces stand on an edge of two others and were left out.",)
+        where = "on an edge of two others and"
+        notes += (f"{counted(n_fins, f'face stands {where} was', f'faces stand {where} were')} left out.",)
     if n_meet:
         notes += (
-            f"At {n_meet} vertices sheets of the surface meet: each was computed by itself, and the values there are "
-            "those of one that goes on beyond, or of the largest (status NONMANIFOLD).",
+            f"At {counted(n_meet, 'vertex', 'vertices')} sheets of the surface meet: each was computed by itself, and "
+            "the values there are those of one that goes on beyond, or of the largest (status NONMANIFOLD).",
         )
     return notes
 
@@ -67,7 +72,8 @@ def repeat_notes(n_repeated: int) -> tuple[str, ...]:
     """What was done about faces that are listed more than once."""
     if not n_repeated:
         return ()
-    return (f"{n_repeated} faces have the same vertices as another one, and were left out.",)
+    what = "the same vertices as another one, and"
+    return (f"{counted(n_repeated, f'face has {what} was', f'faces have {what} were')} left out.",)
 
 
 def crease_notes(on_crease: NDArray[np.bool_]) -> tuple[str, ...]:
@@ -75,9 +81,10 @@ def crease_notes(on_crease: NDArray[np.bool_]) -> tuple[str, ...]:
     n = int(np.count_nonzero(on_crease))
     if not n:
         return ()
+    where = "where the two sides differ"
+    what = counted(n, f"vertex lies on a crease, {where}: its", f"vertices lie on creases, {where}: their")
     return (
-        f"{n} vertices lie on creases, where the two sides differ: their values are those of the side that bends most "
-        "(status BOUNDARY), and none is taken across a crease.",
+        f"{what} values are those of the side that bends most (status BOUNDARY), and none is taken across a crease.",
     )
 
 
@@ -86,6 +93,11 @@ def left_out_notes(left_out: NDArray[np.bool_] | None, n_removed: int) -> tuple[
     n = n_removed + (0 if left_out is None else int(np.count_nonzero(left_out)))
     if not n:
         return ()
+    if n == 1:
+        return (
+            "1 vertex was left out, far beside the surface or in the middle of an edge: it has the values of a "
+            "neighbour.",
+        )
     return (
         f"{n} vertices were left out, single ones far beside the surface or in the middle of an edge: they have the "
         "values of a neighbour.",
@@ -98,17 +110,29 @@ def mesh_notes(mesh: TriangleMesh | IntrinsicMesh, *, oriented: bool) -> tuple[s
     notes: list[str] = []
     n_unused = int(np.count_nonzero(~t.face_used))
     if n_unused:
-        notes.append(f"{n_unused} of {mesh.n_faces} faces take no part: a repeated vertex or an undefined length.")
+        what = f"{n_unused} of {counted(mesh.n_faces, 'face', 'faces')} {'takes' if n_unused == 1 else 'take'} no part"
+        notes.append(f"{what}: a repeated vertex or an undefined length.")
     if isinstance(mesh, TriangleMesh):
+        notes += _rounding_notes(mesh)
         n_seam = _seam_size(mesh)
         if n_seam:
-            notes.append(
-                f"{n_seam} boundary vertices lie on others, where sheets cover each other or more than two edges meet: "
-                "they stay open."
-            )
+            where = "where sheets cover each other or more than two edges meet"
+            notes.append(f"{n_seam} boundary vertices lie on others, {where}: they stay open.")
         if oriented:
             notes += _orientation_notes(mesh)
     return tuple(notes)
+
+
+def _rounding_notes(mesh: TriangleMesh) -> list[str]:
+    """Coordinates that are so large that their rounding is noise."""
+    lengths = mesh.edge_lengths[mesh.topology.face_used]
+    share = position_rounding(mesh) / float(np.mean(lengths)) if lengths.any() else 0.0
+    if not ROUNDED < share < np.inf:
+        return []
+    return [
+        f"The coordinates are rounded by up to {share:.1%} of the mean edge, which is noise of the curvature: they are "
+        "far larger than the mesh; move it to the origin before its coordinates are rounded."
+    ]
 
 
 def _seam_size(mesh: TriangleMesh) -> int:
@@ -122,7 +146,8 @@ def _orientation_notes(mesh: TriangleMesh) -> list[str]:
     notes: list[str] = []
     n_turned = int(np.count_nonzero(t.face_flips))
     if n_turned:
-        notes.append(f"{n_turned} faces were turned to agree with their neighbours.")
+        what = counted(n_turned, "face was turned to agree with its", "faces were turned to agree with their")
+        notes.append(f"{what} neighbours.")
     if not t.is_orientable:
         notes.append("The surface has no consistent orientation: the sign of the mean curvature changes along a cut.")
     elif np.count_nonzero(mesh.outward_flips) > n_turned:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow._arrays import as_floats, as_points
+from rinow._printing import counted
 from rinow.curvature.cloud_fit import cloud_estimate
 from rinow.curvature.cloud_layers import cleaned
 from rinow.curvature.cloud_sheet import cloud_sheet
@@ -114,7 +115,9 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     rows = np.full(len(P), len(distinct), np.intp)  # the last row is for the other points
     rows[finite] = place
     result = relabelled(rescaled(assembled(estimate, status, "point_cloud"), 1.0 / extent), rows)
-    strays = (f"{n_strays} points lie beside the surface of those around them and were left out (UNRESOLVED).",)
+    beside = "beside the surface of those around"
+    what = counted(n_strays, f"point lies {beside} it and was", f"points lie {beside} them and were")
+    strays = (f"{what} left out (UNRESOLVED).",)
     return replace(result, notes=(NOTE, *strays[: bool(n_strays)]))
 
 

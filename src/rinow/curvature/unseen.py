@@ -24,8 +24,8 @@ PASSES = 10
 EVIDENCE = 2.0
 """Squares count beyond so many times the noise expected: that of positions is not quite one of lengths."""
 BESIDE = 2.0
-"""Nothing is left to be seen nearer to a boundary than so many standard deviations of that average: defects end there,
-and with them the cancellation of noise between neighbours."""
+"""That average is over fewer steps nearer to a boundary than so many standard deviations of it, and none is taken where
+one step is too many: defects end there, and with them the cancellation of noise between neighbours."""
 ROUGH = 1.7
 """Share by which noise of the positions makes areas larger, over that of the lengths in it.  Noise σ of the positions
 adds 2(σ/h)² to the area of equilateral triangles of side h, up to twice that to stretched ones, and defects as if by
@@ -58,8 +58,8 @@ def unseen_error(
     Notes
     -----
     - *What is left.*  The least of many predicted errors is one whose bias has been taken for too small.  Averaged
-      over an eighth of the steps, the curvatures less the estimate show a bias that scales agree on, as far as their
-      square exceeds the noise.
+      over an eighth of the steps, or less near a boundary, the curvatures less the estimate show a bias that scales
+      agree on, as far as their square exceeds the noise.
     - *Roughness.*  By Gauss and Bonnet noise keeps the integral of K, but it makes the area larger, and K smaller.
     - *Boundary.*  No defect is known there, and averages of variance s² at the distance x from it are those of a point
       further inside, by :math:`2s(\varphi(x/s) - (x/s)\Phi(-x/s))` with the normal density φ and distribution Φ, at
@@ -92,7 +92,10 @@ def _left_over(
     flow: CurvatureFlow, noise: LengthNoise, residual: Floats, level: Floats, steps: Floats, distance: Floats
 ) -> Floats:
     """(n_vertices,): mean square of what the estimate leaves, averaged over a part of its steps, less the noise."""
-    rungs, left = _rungs(steps / PART, LONGEST - 3), np.zeros(len(residual))
+    with np.errstate(all="ignore"):
+        most = (distance / BESIDE) ** 2 / noise.step
+        rungs = np.minimum(_rungs(steps / PART, LONGEST - 3), np.floor(np.log2(np.clip(most, 1.0, 2.0**LONGEST))))
+    rungs, left = np.where(np.isfinite(rungs), rungs, 0).astype(np.intp), np.zeros(len(residual))
     windows = [window(2**rung, 1) for rung in range(int(rungs.max(initial=0)) + 1)]
     for rung, mean in enumerate(Waves(flow, np.nan_to_num(residual)).sums(windows)):
         with np.errstate(invalid="ignore"):

@@ -17,6 +17,7 @@ from rinow.curvature.edits import EditedFaces, Face
 from rinow.curvature.estimate import Estimate, Floats
 from rinow.curvature.outliers import fill_without, outlying_vertices
 from rinow.curvature.redundant import redundant_vertices
+from rinow.curvature.subdivided import coarser
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = ["Removed", "give_values", "without_edge_points", "without_strays"]
@@ -29,6 +30,8 @@ less than at a chamfer, where the vertex may be a corner."""
 
 MIDDLE = 1e-6
 """Share of the edge by which a vertex may miss its middle: far above rounding."""
+BESIDE = 0.5 - 2.0 * MIDDLE
+"""Share of a vertex that is on no edge: the first end is the nearer one, what both differ by counts half."""
 
 
 class Removed(NamedTuple):
@@ -45,20 +48,21 @@ def without_strays(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Removed
     mesh, removed = without_edge_points(mesh, amid)
     if isinstance(mesh, IntrinsicMesh):
         return mesh, removed
-    edited = EditedFaces(mesh)
+    edited, strays = EditedFaces(mesh), list[Removed]()
     for t in outlying_vertices(mesh):
         star, new = edited.star(t), fill_without(edited, t)
         if new is not None:
             place = _beside(edited, t, {v for face in new for v in face})
             edited.replace(star, new, {})
-            removed.append(place)
-    return edited.result(), removed
+            strays.append(place)
+    return edited.result(), [*strays, *removed]
 
 
 def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Removed]]:
     """The mesh with the stars of vertices amid an edge filled, where the surface is smooth, and those vertices.
 
-    With positions also those of other vertices that lie on a face or an edge of the rest (`redundant_vertices`).
+    With positions it is also without other vertices that lie on a face or an edge of the rest (`coarser`,
+    `redundant_vertices`).
 
     Parameters
     ----------
@@ -74,11 +78,13 @@ def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Re
     removed : list of Removed
         Which ones, each after those that its values depend on.
     """
+    split = list[Removed]()
     if isinstance(mesh, TriangleMesh):
+        mesh, split = _without_splits(mesh)
         known = {place.vertex for place in amid}
         amid = [*amid, *(place for place in redundant_vertices(mesh) if place.vertex not in known)]
     if not amid:
-        return mesh, []
+        return mesh, split
     edited, removed = EditedFaces(mesh), list[Removed]()
     for place in reversed(amid):
         t, a, b = place
@@ -90,7 +96,17 @@ def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Re
             at, tb = edited.length(a, t), edited.length(t, b)
             if _remove(edited, place):
                 removed.append(Removed(*place, at / (at + tb)))
-    return edited.result(), _on_whole_edges(removed[::-1])
+    return edited.result(), [*_on_whole_edges(removed[::-1]), *split]
+
+
+def _without_splits(mesh: TriangleMesh) -> tuple[TriangleMesh, list[Removed]]:
+    """The mesh whose faces were not split in their plane, and the vertices that it is without."""
+    found = coarser(mesh)
+    if found is None:
+        return mesh, []
+    shares = np.where(np.isnan(found.shares), BESIDE, found.shares)
+    rows = zip(found.vertices.tolist(), *found.ends.T.tolist(), shares.tolist(), strict=True)
+    return found.mesh, [Removed(*row) for row in rows]
 
 
 def _on_whole_edges(removed: list[Removed]) -> list[Removed]:
@@ -122,7 +138,7 @@ def give_values(estimate: Estimate, status: NDArray[np.uint8], removed: list[Rem
 def _beside(edited: EditedFaces, vertex: int, around: set[int]) -> Removed:
     """A vertex beside the nearest of those around; what that and the one farthest from it differ by counts half."""
     near = min(sorted(around), key=lambda v: edited.length(vertex, v))
-    return Removed(vertex, near, max(sorted(around), key=lambda v: edited.length(near, v)), 0.5 - 2.0 * MIDDLE)
+    return Removed(vertex, near, max(sorted(around), key=lambda v: edited.length(near, v)), BESIDE)
 
 
 def _remove_from_triangle(edited: EditedFaces, vertex: int) -> bool:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rinow._printing import counted
 from rinow.errors import FileFormatError, InvalidMeshError
 from rinow.io.atomic import replacing
 from rinow.io.faults import quiet
@@ -65,7 +66,8 @@ def read_glb(path: Path) -> TriangleMesh:
             f"the {len(faces)} parts of the scene were joined into one mesh; vertices on their seams were not merged."
         )
     if n_other:
-        notes.append(f"{n_other} parts of the scene without triangles were left out.")
+        what = counted(n_other, "part of the scene without triangles was", "parts of the scene without triangles were")
+        notes.append(f"{what} left out.")
     return TriangleMesh(np.concatenate(vertices), np.concatenate(faces), notes=tuple(notes))
 
 

@@ -9,6 +9,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._printing import counted
 from rinow.errors import FileFormatError, InvalidInputError
 from rinow.io.atomic import replacing
 from rinow.io.fields import Fields, Units, in_type_of
@@ -71,7 +72,8 @@ def read_ply(path: Path) -> TriangleMesh:
     strips = _find(columns.get("tristrips", {}))
     faces, notes = surface_triangles(len(vertices), _find(columns.get("face", {})), strips and _split(strips))
     if rest:
-        notes = (*notes, f"{rest} bytes after the last element were left unread.")
+        what = "after the last element"
+        notes = (*notes, f"{counted(rest, f'byte {what} was', f'bytes {what} were')} left unread.")
     return TriangleMesh(vertices, faces, fields, notes)
 
 

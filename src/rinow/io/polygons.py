@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow._printing import counted
 from rinow.errors import FileFormatError, InvalidMeshError
 
 __all__ = ["Runs", "runs_of_offsets", "surface_triangles"]
@@ -90,7 +91,7 @@ def surface_triangles(
         notes += _notes(polygons)
     if strips and len(strips.items):
         parts.append(_strips(strips, n_vertices))
-        notes.append(f"{len(parts[-1])} triangles were taken from triangle strips.")
+        notes.append(f"{counted(len(parts[-1]), 'triangle was', 'triangles were')} taken from triangle strips.")
     faces = np.concatenate(parts) if len(parts) > 1 else parts[0] if parts else np.empty((0, 3), np.intp)
     if not len(faces):
         raise InvalidMeshError("the file has no face; for a point cloud use point_cloud_curvature.")
@@ -146,10 +147,12 @@ def _notes(polygons: Runs) -> list[str]:
     large, small = int((counts > 3).sum()), int((counts < 3).sum())
     notes: list[str] = []
     if large:
+        what = "with more than three corners"
         notes.append(
-            f"{large} faces with more than three corners were split into triangles, each as a fan around its first "
-            "corner; a face that is not convex may come out wrong."
+            f"{counted(large, f'face {what} was', f'faces {what} were')} split into triangles, each as a fan around "
+            "its first corner; a face that is not convex may come out wrong."
         )
     if small:
-        notes.append(f"{small} faces with fewer than three corners were left out.")
+        what = "with fewer than three corners"
+        notes.append(f"{counted(small, f'face {what} was', f'faces {what} were')} left out.")
     return notes

@@ -16,6 +16,10 @@ GROWTH = 0.75
 """Share of the radius within which members carry the growth on: their stars reach the radius."""
 
 
+SLIM, SLIVERS = 0.01, 4
+"""Shares of a spacing that errors of places reach, and faces in a row that are looked at beyond one so slim."""
+
+
 class Metric(NamedTuple):
     """Faces (n, 3), their side lengths, angles and areas, compressed rows of corners, and partners of half-edges."""
 
@@ -91,6 +95,7 @@ def beyond(c, points, p, q, n, metric, members, slots):
     """Place of the vertex of corner c beyond the opposite edge, whose ends are members p and q.
 
     It lies on the other side than the third vertex of the face across the edge, or than the origin if that is nowhere.
+    Where that vertex is too near the edge to tell its side, that of the face beyond it does.
     """
     f, k = c // 3, c % 3
     l, to_p, to_q = metric.lengths[f, k], metric.lengths[f, (k + 1) % 3], metric.lengths[f, (k + 2) % 3]
@@ -102,15 +107,22 @@ def beyond(c, points, p, q, n, metric, members, slots):
     if l == 0.0 or length == 0.0:
         return mx, my
     ex, ey = ex / length, ey / length
-    x, y = -mx, -my
+    aside = from_origin = ey * mx - ex * my
     g = metric.partners[next_corner(c)]
-    if g >= 0:
-        d = metric.faces[g // 3, (g % 3 + 2) % 3]
-        if is_member(d, n, members, slots):
-            s = slots[d]
-            x, y = points[s, 0] - mx, points[s, 1] - my
+    for _ in range(SLIVERS):
+        i = max(g // 3, 0)
+        d = metric.faces[i, (g % 3 + 2) % 3]
+        if g < 0 or not is_member(d, n, members, slots):
+            aside = from_origin
+            break
+        s = slots[d]
+        aside = ex * (points[s, 1] - my) - ey * (points[s, 0] - mx)
+        if abs(aside) > SLIM * length:
+            break
+        a, b = next_corner(g), previous_corner(g)
+        g = metric.partners[a if metric.lengths[i, (a % 3 + 2) % 3] > metric.lengths[i, (b % 3 + 2) % 3] else b]
     height = 2.0 * metric.areas[f] / l
-    if ex * y - ey * x > 0.0:
+    if aside > 0.0:
         height = -height
     along = 0.5 * (to_p - to_q) * (to_p + to_q) / l
     return mx + along * ex - height * ey, my + along * ey + height * ex
@@ -155,6 +167,8 @@ def place_across(c, m, end, n, metric, members, slots, points, counts):
         return n
     if not is_placed:
         b, p, q = a, q, p
+    if metric.lengths[b // 3, b % 3] < SLIM * metric.lengths[b // 3, (b % 3 + 1) % 3]:
+        return n  # the places of both ends do not tell its direction
     x, y = beyond(b, points, m, slots[p], end, metric, members, slots)
     if is_member(q, n, members, slots):
         s = slots[q]
