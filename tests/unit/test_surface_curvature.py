@@ -407,15 +407,18 @@ def test_meshes_of_other_libraries():
         ({"method": "sectional", "radius": [1.0, 2.0]}, "is not a positive length"),
         ({"method": "sectional", "radius": "big"}, "radius has type"),
         ({"method": "lifted", "radius": 1.0}, "radius = 1.0 is not for method 'lifted'"),
-        *(
-            ({"method": m, "quality": "fast"}, f"quality = 'fast' is not for method '{m}', which has none; leave")
-            for m in ("lifted", "intrinsic", "wald", "robinson", "angle_defect")
-        ),
     ],
 )
 def test_faults_of_options_are_named(options, message):
     with pytest.raises(InvalidInputError, match=message):
         curvature(SPHERE, **options)
+
+
+@pytest.mark.parametrize("method", ["lifted", "intrinsic", "wald", "robinson", "angle_defect"])
+def test_quality_changes_nothing_with_methods_that_have_one(method):
+    best, fast = (curvature(SPHERE, method=method, quality=quality) for quality in ("best", "fast"))
+    np.testing.assert_array_equal(fast.gaussian, best.gaussian)
+    assert fast.notes == (*best.notes, f"quality 'fast' changes nothing: method {method!r} has only one.")
 
 
 @pytest.mark.parametrize("method", WITH_POSITIONS)

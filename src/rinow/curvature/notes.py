@@ -104,6 +104,11 @@ def left_out_notes(left_out: NDArray[np.bool_] | None, n_removed: int) -> tuple[
     )
 
 
+def quality_notes(quality: str, method: str) -> tuple[str, ...]:
+    """That a quality changes nothing."""
+    return (f"quality {quality!r} changes nothing: method {method!r} has only one.",)
+
+
 def mesh_notes(mesh: TriangleMesh | IntrinsicMesh, *, oriented: bool) -> tuple[str, ...]:
     """Faults of a mesh that concern its curvature; those of its orientation only if the method looks at it."""
     t = mesh.topology

@@ -24,7 +24,9 @@ VALUES_PER_TASK = 200_000
 ADDING = 8
 """Pieces that vertices are cut into when values are added."""
 NO_FRAMES = np.empty((0, 11))
-NO_PATCHES = patch_driver.Patches(*np.empty((3, 0)), np.empty(0, np.int32), np.empty((0, patches.N_VALUES)))
+NO_PATCHES = patch_driver.Patches(
+    np.empty(0), np.empty(0), np.empty(0), np.empty(0, np.int32), np.empty((0, patches.N_VALUES))
+)
 
 
 @dataclass

@@ -19,7 +19,7 @@ from rinow.curvature.estimate import Estimate
 from rinow.curvature.geodesic_stars import geodesic_wald, robinson
 from rinow.curvature.intrinsic import intrinsic
 from rinow.curvature.lifted import lifted
-from rinow.curvature.notes import crease_notes, left_out_notes, mesh_notes
+from rinow.curvature.notes import crease_notes, left_out_notes, mesh_notes, quality_notes
 from rinow.curvature.repairs import repair, sheets_of
 from rinow.curvature.sectional import sectional
 from rinow.curvature.status import VertexStatus, vertex_status
@@ -36,7 +36,6 @@ Floats = NDArray[np.float64]
 INTRINSIC = {"angle_defect": angle_defect, "intrinsic": intrinsic, "wald": wald}
 BY_POSITIONS = {"auto": auto, "sectional": sectional}
 BY_LENGTHS = (*INTRINSIC, "robinson")
-WITH_QUALITY = tuple(BY_POSITIONS)
 WITH_RADIUS = ("auto", "sectional", "intrinsic", "wald", "robinson")
 METHODS = ("auto", "sectional", "lifted", "intrinsic", "wald", "robinson", "angle_defect")
 QUALITIES = ("best", "fast")
@@ -134,7 +133,8 @@ def surface_curvature(
         order and scale at each place from the data.
     quality : {"best", "fast"}, optional
         "fast" lets a sample of the vertices decide about order and scale around it, with fewer patches; it is about
-        twice as fast and less accurate.  For "sectional" and "auto" only.
+        twice as fast and less accurate.  For "sectional" and "auto"; a note tells that it
+        changes nothing with others.
     radius : float, optional
         Radius of all balls of "sectional" and "auto", of the averages of "intrinsic", or of the stars of "wald" and
         "robinson", positive, in the unit of length.  By default the data decide; "wald" takes the triangles around
@@ -154,7 +154,7 @@ def surface_curvature(
     InvalidMeshError
         If `mesh` is none of the above, or has no positions and `method` needs them.
     InvalidInputError
-        If `method` or `quality` is unknown, `radius` not positive, or one of the latter two not for this method.
+        If `method` or `quality` is unknown, or `radius` is not positive or not for this method.
 
     See Also
     --------
@@ -204,6 +204,8 @@ def surface_curvature(
     result = assembled(estimate, status, chosen)
     notes += mesh_notes(surface, oriented=chosen not in BY_LENGTHS) + sheets.notes + crease_notes(on_crease)
     notes += left_out_notes(estimate.left_out, len(removed))
+    if quality != "best" and chosen not in BY_POSITIONS:
+        notes += quality_notes(quality, chosen)
     return replace(relabelled(rescaled(result, unit), index), notes=notes)
 
 
@@ -211,8 +213,6 @@ def _chosen_method(method: str, quality: str, mesh: TriangleMesh | IntrinsicMesh
     for name, value, allowed in (("method", method, METHODS), ("quality", quality, QUALITIES)):
         if value not in allowed:
             raise InvalidInputError(f"{name} = {value!r} is unknown; choose from {', '.join(allowed)}.")
-    if quality != "best" and method not in WITH_QUALITY:
-        raise InvalidInputError(f"quality = {quality!r} is not for method {method!r}, which has none; leave it out.")
     return "intrinsic" if method == "auto" and isinstance(mesh, IntrinsicMesh) else method
 
 
