@@ -8,11 +8,8 @@ Graphs
     `graph`, over `graph_rows` and `graph_wald`.
 Surfaces
     `surface` takes a method and gives a result with a status (`status`, `notes`) for the mesh as `repairs` leave it
-    (over `cracks`, `caps`, `edits`, `crossings`) and `vertex_removal` (of `redundant` vertices and `outliers`, by
-    `ear_clipping`), in `units` that are safe; each method makes an `estimate`.
-    (over `cracks`, `caps`, `edits`, `crossings`) and `edge_points` with
-    `subdivided` over `split_edges`, `redundant`, `outliers`, `polygons`;
-    each method makes an `estimate`.
+    (over `cracks`, `caps`, `edits`, `crossings`) and `vertex_removal` (`subdivided` over `split_edges`, `redundant`
+    vertices and `outliers`, by `ear_clipping`), in `units` that are safe; each method makes an `estimate`.
 
     - Edge lengths alone: `angle_defect`, `wald`, `geodesic_stars`; `intrinsic` with `flow`, `waves`, `arcs`,
       `length_noise`, `unseen`.
