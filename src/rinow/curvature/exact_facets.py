@@ -45,18 +45,20 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     The smaller facet beside an edge is a step if it turns the other way at its far side.  Surfaces of voxels consist of
     steps, whose treads are flat facets of a surface that is none.
     """
+    with np.errstate(invalid="ignore"):
+        is_sharp, is_flat = np.abs(turnings) >= SHARP, np.abs(turnings) <= POSITION_ROUNDING * mesh.diagonal * gains
     other = mesh.topology.partners[halfedges]
-    if not np.any((other >= 0) & (np.abs(turnings) >= SHARP)):
+    is_sharp &= other >= 0
+    is_flat &= other >= 0
+    if not is_sharp.any() or np.count_nonzero(is_flat) < LARGE:
         return np.zeros(len(other), np.bool_)
     sides = np.stack([halfedges // 3, np.where(other >= 0, other // 3, halfedges // 3)])
     angles = np.where(other >= 0, np.nan_to_num(turnings), 0.0)
-    with np.errstate(invalid="ignore"):
-        is_flat = (other >= 0) & (np.abs(angles) <= POSITION_ROUNDING * mesh.diagonal * gains)
     n = mesh.n_faces
     graph = coo_array((is_flat[is_flat], sides[:, is_flat]), shape=(n, n))
     facet_of_face = connected_components(graph, directed=False)[1]
     facets, is_large = facet_of_face[sides], (np.bincount(facet_of_face) >= LARGE)[facet_of_face[sides]]
-    ends = (np.abs(angles) >= SHARP) & is_large.any(axis=0)
+    ends = is_sharp & is_large.any(axis=0)
     sharp = np.flatnonzero(ends)
     areas = np.bincount(facet_of_face, mesh.face_areas)[facets[:, sharp]]
     smaller = np.where(areas[0] < areas[1], facets[0, sharp], facets[1, sharp])
