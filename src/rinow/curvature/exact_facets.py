@@ -57,7 +57,10 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     n = mesh.n_faces
     graph = coo_array((is_flat[is_flat], sides[:, is_flat]), shape=(n, n))
     facet_of_face = connected_components(graph, directed=False)[1]
-    facets, is_large = facet_of_face[sides], (np.bincount(facet_of_face) >= LARGE)[facet_of_face[sides]]
+    is_large = (np.bincount(facet_of_face) >= LARGE)[facet_of_face]
+    if not is_large.any():
+        return np.zeros(len(other), np.bool_)
+    facets, is_large = facet_of_face[sides], is_large[sides]
     ends = is_sharp & is_large.any(axis=0)
     sharp = np.flatnonzero(ends)
     areas = np.bincount(facet_of_face, mesh.face_areas)[facets[:, sharp]]
