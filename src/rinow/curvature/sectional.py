@@ -205,9 +205,9 @@ def blended_patches(
     for search, is_own in ((INSIDE, ~beside & quality.selects), (BESIDE, beside)):
         if is_own.any():
             own = slice(None) if is_own.all() else np.flatnonzero(is_own)  # a view of all centres costs no memory
-            links = _look(search, own, sheet, ladder, centres, core, window, frames, curvedness, choice, tasks)
+            found = _look(search, own, sheet, ladder, centres, core, window, frames, curvedness, choice, tasks)
             if search is BESIDE:
-                best[own] = _least_over_own(choice.risk[own], links)
+                best[own] = found
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
@@ -244,8 +244,8 @@ def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
 def _look(
     search: Search, own: slice | NDArray[np.intp], sheet: balls.Sheet, ladder: Ladder, centres: Ints, core: Floats,
     window: tuple[Ints, Ints, Ints, Floats], frames: Floats, curvedness: Floats, choice: Choice, tasks: Tasks,
-) -> tuple[Ints, Ints]:  # fmt: skip
-    """Let some of the centres choose by themselves, in place; the centres around each, in compressed rows."""
+) -> Floats:  # fmt: skip
+    """Let some of the centres choose by themselves, in place; the least risk around each over its own."""
     few = centres[own]
     low, high, top, noise = window[0][own], window[1][own], window[2][own], window[3][own]
     links = members_of_discs(sheet, few, few, search.around * core[own])
@@ -261,11 +261,7 @@ def _look(
         low = np.where(has_fit, np.maximum(low, found.radius - NARROW), low)
         high = np.where(has_fit, np.minimum(high, found.radius + NARROW), high)
     tasks.part = 1.0
-    return links
-
-
-def _least_over_own(risk: Floats, links: tuple[Ints, Ints]) -> Floats:
-    """The least risk of the centres around each over its own, where that is finite."""
+    risk = choice.risk[own]
     with np.errstate(invalid="ignore"):
         return np.minimum.reduceat(risk[links[1]], links[0][:-1]) / risk
 

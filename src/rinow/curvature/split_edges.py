@@ -72,7 +72,7 @@ class SplitEdges:
         t, sizes = self.mesh.topology, np.abs(self._turnings.turnings)
         with np.errstate(invalid="ignore"):
             sizes = sizes / (FLAT + self._rounding * self._turnings.gains)
-        bends, ends = ~(sizes <= 1.0), t.edges
+        bends, ends = ~(sizes <= 1.0), t.halfedge_ends(t.edge_halfedges)  # the mesh would keep `edges`
         for _ in range(LONGEST):
             counts = np.bincount(ends[bends].ravel(), minlength=self.mesh.n_vertices)
             loose = bends & (sizes <= DOUBTFUL) & (counts[ends] == 1).any(axis=1)
@@ -92,7 +92,7 @@ class SplitEdges:
 
     def _find(self, is_inner: Bools) -> None:
         mesh, t = self.mesh, self.mesh.topology
-        bent = t.edges[self.bends]
+        bent = t.halfedge_ends(t.edge_halfedges[self.bends])
         counts = np.bincount(bent.ravel(), minlength=mesh.n_vertices)
         self.inside = is_inner & (counts == 0)
         found = t.vertex_is_manifold & (counts == 2)  # at the boundary these are the two edges of it
