@@ -60,13 +60,13 @@ class CurvatureFlow:
     @cached_property
     def spacing(self) -> Floats:
         """(n_vertices,): distance of neighbours, averaged around each vertex: see `stencils.local_spacing`."""
-        edges = np.empty(self.mesh.n_vertices)
+        edges, even = np.empty(self.mesh.n_vertices), self.even_spacing
         smoothing.mean_sides(self.metric, edges)
-        return np.clip(self.means(edges, 1), self.even_spacing, NEEDLES * self.even_spacing)
+        return np.clip(self.means(edges, 1), even, NEEDLES * even)
 
-    @cached_property
+    @property
     def even_spacing(self) -> Floats:
-        """(n_vertices,): the same of as many vertices if their triangles were equilateral."""
+        """(n_vertices,): the same of as many vertices if their triangles were equilateral.  It is not kept."""
         shares = np.where(self.mesh.topology.vertex_is_boundary, 0.5, 1.0)
         with np.errstate(all="ignore"):
             areas = self._ring_sums(self._ring_sums(self.mesh.vertex_areas)) / self._ring_sums(self._ring_sums(shares))

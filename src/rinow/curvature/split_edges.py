@@ -19,6 +19,9 @@ Indices = NDArray[np.intp]
 FLAT = 1e-7
 """Turning of an edge and angle defect of a vertex, in radians, up to which they are 0 but for rounding: less than on
 any mesh that shows a curvature."""
+DEFECT = 64.0
+"""Angle defect by rounding, in units of that of a position over the root of the area of a vertex: some vertex of a split
+face has no more.  Of a million vertices of a curved surface hardly any has as little."""
 ROUNDINGS = 4.0
 """Errors of positions, in units of their rounding, that are looked for: those of all ends of three edges."""
 DOUBTFUL = 8.0
@@ -55,7 +58,9 @@ class SplitEdges:
         self.ends, self.shares = np.full((n, 2), -1, np.intp), np.full(n, np.nan)
         self.on_edges, self.inside, self.corners = np.zeros((3, n), np.bool_)
         is_inner = t.vertex_is_manifold & ~t.vertex_is_boundary
-        flat = is_inner & (np.abs(mesh.vertex_angle_defects) <= FLAT)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            least = np.minimum(FLAT, DEFECT * position_rounding(mesh) / np.sqrt(mesh.vertex_areas))
+        flat = is_inner & (np.abs(mesh.vertex_angle_defects) <= least)
         if self._rounding > 2.0**-50 * mesh.diagonal or flat.any():
             self._find(is_inner)
 
