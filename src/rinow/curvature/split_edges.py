@@ -20,8 +20,8 @@ FLAT = 1e-7
 """Turning of an edge and angle defect of a vertex, in radians, up to which they are 0 but for rounding: less than on
 any mesh that shows a curvature."""
 DEFECT = 64.0
-"""Angle defect by rounding, in units of that of a position over the root of the area of a vertex: some vertex of a split
-face has no more.  Of a million vertices of a curved surface hardly any has as little."""
+"""Angle defect by rounding, in units of that of a position over the root of the area of a vertex: some vertex of a
+split face has no more.  Of a million vertices of a curved surface hardly any has as little."""
 ROUNDINGS = 4.0
 """Errors of positions, in units of their rounding, that are looked for: those of all ends of three edges."""
 DOUBTFUL = 8.0
