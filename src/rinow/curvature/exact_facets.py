@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from rinow.mesh import TriangleMesh
+from rinow.topology import clusters
 
 __all__ = ["POSITION_ROUNDING", "ends_of_facets"]
 
@@ -22,8 +21,8 @@ LARGE = 8
 SHARP, TURNED = np.radians(60.0), np.radians(30.0)
 """Least turning where a large facet ends, and of an edge that ends a step.  Between the voxels of a segmented volume
 marching cubes turn by 55° at most."""
-FEW = 100
-"""Most edges around a facet that is looked at as a step."""
+FEW, AT_ONCE = 100, 1 << 14
+"""Most edges around a facet that is looked at as a step, and edges looked at together: memory is linear in both."""
 ALONG = 0.7
 """Least cosine between two edges that run the same way."""
 
@@ -54,9 +53,7 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
         return np.zeros(len(other), np.bool_)
     sides = np.stack([halfedges // 3, np.where(other >= 0, other // 3, halfedges // 3)])
     angles = np.where(other >= 0, np.nan_to_num(turnings), 0.0)
-    n = mesh.n_faces
-    graph = coo_array((is_flat[is_flat], sides[:, is_flat]), shape=(n, n))
-    facet_of_face = connected_components(graph, directed=False)[1]
+    facet_of_face = clusters(mesh.n_faces, sides[:, is_flat].T)[1]
     is_large = (np.bincount(facet_of_face) >= LARGE)[facet_of_face]
     if not is_large.any():
         return np.zeros(len(other), np.bool_)
@@ -76,12 +73,14 @@ def _begin_steps(edges: Indices, beside: Indices, mesh: TriangleMesh, angles: Fl
     owners, borders = facets[:, turned].ravel()[order], np.tile(turned, 2)[order]
     first, last = (np.searchsorted(owners, beside, side) for side in ("left", "right"))
     counts = np.where(last - first <= FEW, last - first, 0)
-    rows = np.repeat(np.arange(len(edges)), counts)
-    own = edges[rows]
-    far = borders[np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts) + first[rows]]
     ends = mesh.vertices[mesh.topology.edges]
-    along = ends[:, 1] - ends[:, 0]
-    cosines = np.sum(along[own] * along[far], axis=1)
-    lengths = np.sum(along[own] ** 2, axis=1) * np.sum(along[far] ** 2, axis=1)
-    is_step = (angles[own] * angles[far] < 0.0) & (cosines**2 > ALONG**2 * lengths)
-    return np.bincount(rows[is_step], minlength=len(edges)) > 0
+    along, begins = ends[:, 1] - ends[:, 0], np.zeros(len(edges), np.bool_)
+    for start in range(0, len(edges), AT_ONCE):
+        part = slice(start, start + AT_ONCE)
+        rows = np.repeat(np.arange(len(edges))[part], counts[part])
+        place = np.arange(len(rows)) - np.repeat(np.cumsum(counts[part]) - counts[part], counts[part])
+        own, far = edges[rows], borders[first[rows] + place]
+        cosines = np.sum(along[own] * along[far], axis=1)
+        lengths = np.sum(along[own] ** 2, axis=1) * np.sum(along[far] ** 2, axis=1)
+        begins[rows[(angles[own] * angles[far] < 0.0) & (cosines**2 > ALONG**2 * lengths)]] = True
+    return begins
