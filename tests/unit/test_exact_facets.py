@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial import Delaunay
 
 import rinow
+from rinow.curvature import exact_facets
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.exact_facets import ends_of_facets
 
@@ -89,3 +90,26 @@ def test_perforated_plates_have_no_curvature(quality):
     vertices, faces, _ = perforated_plate(8, 6, 0.45)
     result = rinow.surface_curvature((vertices, faces), quality=quality)
     assert np.nanmax(np.abs(result.gaussian)) < 1e-6
+
+
+def test_ends_do_not_depend_on_how_many_are_looked_at_together(monkeypatch):
+    shapes = perforated_plate(6, 5)[:2], ball_of_voxels(5)
+    expected = [marked(*shape) for shape in shapes]
+    monkeypatch.setattr(exact_facets, "AT_ONCE", 7)
+    for shape, edges in zip(shapes, expected, strict=True):
+        np.testing.assert_array_equal(marked(*shape), edges)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_vertex_that_is_not_finite_ends_no_facet(value):
+    vertices, faces, _ = perforated_plate(5, 5)
+    damaged = vertices.copy()
+    damaged[7] = value
+    found, clean = ({tuple(edge) for edge in marked(v, faces).tolist()} for v in (damaged, vertices))
+    assert {edge for edge in clean - found if 7 not in edge} == {edge for edge in clean if lost(edge, faces)}
+    assert found < clean
+
+
+def lost(edge, faces):
+    """Whether a face of an edge, which does not end at vertex 7, has that vertex, so that it is none."""
+    return 7 not in edge and any(7 in face and set(edge) <= set(face) for face in faces.tolist())

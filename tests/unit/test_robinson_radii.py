@@ -36,4 +36,4 @@ def test_balls_of_uneven_meshes_hold_few_vertices():
         np.diff(geodesics.polar(every, max_distance=radii[every]).offsets).max()
         for radii in (_default_radii(flow), SPACINGS * flow.spacing)
     )
-    assert few < 300 < 500 < many
+    assert few < 300 < 500 < many  # measured 247 and 543
