@@ -78,6 +78,13 @@ def test_smooth_surfaces_and_noise_have_none():
             assert outlying_vertices(TriangleMesh(noisy.vertices, noisy.faces)) == []
 
 
+def test_large_noise_makes_no_outliers():
+    """Of sixty draws with up to a fifth of the spacing one may be left with a fold as wide as its noise explains."""
+    shape = shapes.irregular_ellipsoid(2500)
+    noisy = [shapes.noisy(shape, noise, seed) for noise in (0.1, 0.15, 0.2) for seed in range(20)]
+    assert sum(len(outlying_vertices(TriangleMesh(mesh.vertices, mesh.faces))) for mesh in noisy) <= 1
+
+
 def test_several_are_found_at_any_numbering_and_orientation():
     W = V.copy()
     for v, height in ((100, 3.0), (300, -1.0), (500, 0.7)):

@@ -20,8 +20,12 @@ Floats = NDArray[np.float64]
 LEAST = 0.25
 """Angle defect in radians from which on a vertex is looked at: that of one 0.3 spacings above the surface."""
 FAR, ASIDE = 0.4, 0.1
-"""Height over its neighbours, and distance from the polygon that they are, over the mean edge around: below that it may
-be noise, which fits are made for."""
+"""Height over its neighbours, and distance from a place among them, over the mean edge around: below that a fill is no
+better."""
+NOISE = 4.5
+"""Typical angle defect over the squared noise, in mean edges, of a surface with noise in all directions."""
+HIGH, WIDE = 8.0, 4.0
+"""The same two over the noise around: below that it may be noise, which fits are made for."""
 PEAK, PASSES = 6.0, 3
 """Squared defect over its mean over so many rings: one that stands alone has ten times it, noise rarely five times."""
 CLEAR = 8.0
@@ -58,7 +62,7 @@ def outlying_vertices(mesh: TriangleMesh) -> list[int]:
             continue
         trials = {u: max(_defects_without(edited, defects, u, zone), default=np.inf) for u in sorted(zone)}
         best = min(trials, key=lambda u: trials[u])
-        if trials[best] <= left and _is_far(edited, best, around - {best}):
+        if trials[best] <= left and _is_far(edited, best, around - {best}, _noise(mesh, defects, around, zone)):
             found.append(best)
             touched |= around
     return found
@@ -90,20 +94,31 @@ def _angle_at(edited: EditedFaces, face: Face, vertex: int) -> float:
     return float(np.arctan2(np.linalg.norm(np.cross(u, w)), u @ w))
 
 
-def _is_far(edited: EditedFaces, vertex: int, around: set[int]) -> bool:
-    """The vertex is beside the polygon of its neighbours, above it or in its plane."""
+def _noise(mesh: TriangleMesh, defects: Floats, around: set[int], zone: set[int]) -> float:
+    """Noise over the mean edge by how angle defects beside a zone scatter."""
+    beside = {w for u in around for w in _neighbours(mesh, u)} - zone
+    values = defects[sorted(beside)] if beside else np.zeros(1)
+    return float(np.sqrt(np.median(np.abs(values - np.median(values))) / NOISE))
+
+
+def _is_far(edited: EditedFaces, vertex: int, around: set[int], noise: float) -> bool:
+    """The vertex is beside the polygon of its neighbours, above it or in its plane, by more than noise.
+
+    In the plane that is by the height of a face that is turned over: so far a corner of it was moved at least.
+    """
     ring = _ring(edited, vertex)
     polygon = None if ring is None else _flattened(edited.positions[ring], edited.positions[vertex])
     if polygon is None:
         return False
-    corners, (x, y), height = polygon
-    following = np.roll(corners, -1, axis=0)
-    sides, to = following - corners, np.array([x, y]) - corners
-    is_inside = np.all(sides[:, 0] * to[:, 1] - sides[:, 1] * to[:, 0] >= 0.0)
-    shares = np.clip(np.sum(sides * to, axis=1) / np.sum(sides * sides, axis=1), 0.0, 1.0)
-    aside = 0.0 if is_inside else float(np.linalg.norm(to - shares[:, None] * sides, axis=1).min())
+    corners, at, height = polygon
+    spokes = corners - at
+    following = np.roll(spokes, -1, axis=0)
+    longest = np.max([np.hypot(*side.T) for side in (spokes, following, following - spokes)], axis=0)
+    folded = spokes[:, 1] * following[:, 0] - spokes[:, 0] * following[:, 1]
+    aside = max(0.0, float(np.max(folded / np.maximum(longest, np.finfo(float).tiny))))
     edges = [edited.length(u, w) for u in around for w in _neighbours(edited.mesh, u) if w in around]
-    return bool(np.hypot(aside / ASIDE, height / FAR) > np.mean(edges))
+    least = max(ASIDE, WIDE * noise), max(FAR, HIGH * noise)
+    return bool(np.hypot(aside / least[0], height / least[1]) > np.mean(edges))
 
 
 def _ring(edited: EditedFaces, vertex: int) -> list[int] | None:
