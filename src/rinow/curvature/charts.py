@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["MEAN_ORDER", "WIDER", "Choice", "log_ratios", "lower"]
+__all__ = ["DOUBTFUL", "MEAN_ORDER", "WIDER", "Choice", "either", "leads", "log_ratios", "lower"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -20,6 +20,8 @@ EXPONENT, ABOVE, FARTHEST = 4.0, 2, 9
 """Power of the ratio of residuals that counts between charts, and how many radii above that chosen they are compared:
 there what a fit misses is larger against the noise, which is the same in both charts.  The last is the index of the
 largest radius compared, so that no damage farther away makes the choice."""
+DOUBTFUL = 2.0
+"""Up to this lead, of either chart, a centre that chooses by itself looks in both."""
 STEEPEST = 3.0
 """Angle, in radians, from which on nothing over a plane is believed: a surface that turns back is no graph over it, and
 what is left of it has residuals and errors that look small."""
@@ -32,15 +34,30 @@ class Choice(NamedTuple):
     order: Ints
     risk: Floats
 
+    def at(self, rows: NDArray[np.intp] | Bools) -> Choice:
+        """That of some of them."""
+        return Choice(self.radius[rows], self.order[rows], self.risk[rows])
+
+
+def leads(torus: Choice, plane: Choice, logs: Floats, turns: Floats) -> Floats:
+    """Logarithm of the squared error that the torus promises over that of the plane, by risks and by `log_ratios`.
+
+    It is positive where the plane is better, nan where one has no fit, and -inf where no plane is believed: `turns` are
+    angles by which the normals of the tori turn from the centres to the ends of the balls over planes.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(turns < STEEPEST, np.log(torus.risk) - np.log(plane.risk) - logs, -np.inf)
+
+
+def either(is_plane: Bools, torus: Choice, plane: Choice) -> Choice:
+    """The choices of one chart or the other."""
+    return Choice(*(np.where(is_plane, a, b) for a, b in zip(plane, torus, strict=True)))
+
 
 def lower(torus: Choice, plane: Choice, logs: Floats, turns: Floats) -> tuple[Bools, Choice]:
-    """Whether the plane promises less, by risks and by `log_ratios`, and the choice in that chart.
-
-    `turns` are angles by which the normals of the tori turn from the centres to the ends of the balls over planes.
-    """
-    with np.errstate(divide="ignore"):
-        is_level = (np.log(plane.risk) + logs < np.log(torus.risk)) & (turns < STEEPEST)
-    return is_level, Choice(*(np.where(is_level, a, b) for a, b in zip(plane, torus, strict=True)))
+    """Whether the plane leads, and the choice in the chart that does."""
+    is_level = leads(torus, plane, logs, turns) > 0.0
+    return is_level, either(is_level, torus, plane)
 
 
 def log_ratios(torus: tuple[Choice, Floats], plane: tuple[Choice, Floats]) -> Floats:

@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._executor import Executor, SerialExecutor
-from rinow.curvature.centres import CORE, cover, flat_frames, members_of_discs, sizes_of_discs
-from rinow.curvature.charts import Choice, lower
+from rinow.curvature.centres import CORE, cover, flat_frames, sizes_of_discs
+from rinow.curvature.charts import DOUBTFUL, Choice, either, leads
 from rinow.curvature.ends import repair_ends
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
-from rinow.curvature.scale import Ladder, Samples, chosen_at, curvedness_of, sample, scales, select, windows
+from rinow.curvature.scale import Ladder, Samples, chosen_at, curvedness_of, sample, scales, windows
+from rinow.curvature.searches import BESIDE, INSIDE, Centres, Found, blended, look
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
@@ -38,37 +39,16 @@ Progress = Callable[[int, int], object]
 
 QUARTIC = 3
 """Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
-PASSES = 2
-"""Averages of squared differences over the centres around."""
 EDGE_POWER = 1.5
 """`Quality.power` beside a boundary, where few patches cover a vertex and their errors differ much."""
 EDGE_CALIBRATION = 1.8
 """`Quality.calibration` at a boundary, where patches of any quality choose their order and radius by themselves."""
-OF_GAUSSIAN = 0.8
-"""Squared error of K over that of K and H together if k1 and k2 err alike: k2 dk1 + k1 dk2 has four times the variance
-of the curvedness times (dk1 + dk2)/2."""
 APART = 3.0
 """Squared error over the variance between the patches of a vertex: they share most of their points, so that they err
 together more than they differ."""
 EDGE_RINGS, EDGE_RADII, EDGE_ORDER = 2, 4, 2
 """Vertices this near a boundary look at so many more radii: one-sided balls hold half the vertices, worse placed.
 Orders above the last one bend too freely there for a first frame."""
-
-
-class Search(NamedTuple):
-    """How often centres look for order and radius, and by biases how far around.
-
-    Each round starts from frames of the fits chosen before; `around` is in radii a patch covers.
-    """
-
-    rounds: int
-    around: float
-
-
-NARROW = 5
-"""Another time only so many radii more and less than that chosen are looked at."""
-INSIDE, BESIDE = Search(1, 2.2), Search(2, 4.5)
-"""Centres inside and beside a boundary; there they lie in a strip and their first frames are poor."""
 
 
 class Quality(NamedTuple):
@@ -192,22 +172,28 @@ def blended_patches(
     ratios = np.empty(len(noise))
     risks.vertex_means(samples.starts, samples.near, samples.level_ratios, ratios)
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), pilot, tasks, np.zeros_like(beside))
-    is_level, choice = lower(torus, plane, ratios[centres], ladder.turns(sheet, centres, frames, plane))
-    curvedness, frames[is_level, 9:] = curvedness_of(frames), 0.0
+    lead = leads(torus, plane, ratios[centres], ladder.turns(sheet, centres, frames, plane))
+    is_level, is_open = lead > 0.0, beside & ~np.isneginf(lead) | (quality.selects & (np.abs(lead) < DOUBTFUL))
+    choice, other = either(is_level, torus, plane), either(~is_level, torus, plane)
+    curvedness, others = curvedness_of(frames), frames.copy()
+    frames[is_level, 9:], others[~is_level, 9:] = 0.0, 0.0
     if not quality.selects:
         rows = np.flatnonzero(is_level & ~beside)
-        of_rows = Choice(choice.radius[rows], choice.order[rows], choice.risk[rows])
-        frames[rows] = ladder.frames(sheet, centres[rows], frames[rows], of_rows, tasks, np.ones(len(rows), np.bool_))
+        is_plane = np.ones(len(rows), np.bool_)
+        frames[rows] = ladder.frames(sheet, centres[rows], frames[rows], choice.at(rows), tasks, is_plane)
     high = high[centres] + np.where(beside, EDGE_RADII, 0)
-    window = *_widened(low[centres], high, top[centres], len(ladder.reaches)), at_centres
+    window = _widened(low[centres], high, top[centres], len(ladder.reaches))
+    known = Centres(centres, core, *window, at_centres, curvedness)
+    found, there = Found(frames, choice, np.ones(len(centres))), Found(others, other, np.ones(len(centres)))
     del between, low, top, logs, pilot, torus, plane  # the searches need the memory
-    best = np.ones(len(centres))
-    for search, is_own in ((INSIDE, ~beside & quality.selects), (BESIDE, beside)):
-        if is_own.any():
-            own = slice(None) if is_own.all() else np.flatnonzero(is_own)  # a view of all centres costs no memory
-            found = _look(search, own, sheet, ladder, centres, core, window, frames, curvedness, choice, tasks)
-            if search is BESIDE:
-                best[own] = found
+    share = 1.0 / (len(centres) + np.count_nonzero(is_open))
+    for search, rows in ((INSIDE, np.flatnonzero(~beside & quality.selects)), (BESIDE, np.flatnonzero(beside))):
+        found.put(rows, look(search, sheet, ladder, known.at(rows), found.at(rows), tasks, share))
+        rows = rows[is_open[rows]]
+        there.put(rows, look(search, sheet, ladder, known.at(rows), there.at(rows), tasks, share))
+    (frames, choice, least), rows = blended(found, there, is_open)
+    centres, core, at_centres, beside = centres[rows], core[rows], at_centres[rows], beside[rows]
+    least[~beside] = 1.0
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
@@ -215,7 +201,7 @@ def blended_patches(
         patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
     )
     expected = in_half_octaves(choice.risk, sheet.spacing[centres] ** -4)
-    weights = expected**-quality.power * in_half_octaves(best, np.ones(1)) ** (EDGE_POWER - quality.power)
+    weights = expected**-quality.power * in_half_octaves(least, np.ones(1)) ** (EDGE_POWER - quality.power)
     add_patches(fitting, CORE * core, expected, weights, totals, tasks, 0.2)
     out, direction1, direction2 = np.empty((len(totals), 6)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
     patches.mean_values(totals, sheet.normals, out, direction1, direction2)
@@ -239,31 +225,6 @@ def _safe(choice: Choice, beside: NDArray[np.bool_], ladder: Ladder) -> Choice:
     radius = np.where(beside, np.minimum(choice.radius + EDGE_RADII, len(ladder.reaches) - 1), choice.radius)
     order = np.where(beside, np.minimum(choice.order, EDGE_ORDER), choice.order)
     return choice._replace(radius=radius.astype(np.int32), order=order.astype(np.int32))
-
-
-def _look(
-    search: Search, own: slice | NDArray[np.intp], sheet: balls.Sheet, ladder: Ladder, centres: Ints, core: Floats,
-    window: tuple[Ints, Ints, Ints, Floats], frames: Floats, curvedness: Floats, choice: Choice, tasks: Tasks,
-) -> Floats:  # fmt: skip
-    """Let some of the centres choose by themselves, in place; the least risk around each over its own."""
-    few = centres[own]
-    low, high, top, noise = window[0][own], window[1][own], window[2][own], window[3][own]
-    links = members_of_discs(sheet, few, few, search.around * core[own])
-    tasks.part = len(few) / len(centres) / search.rounds
-    for _ in range(search.rounds):
-        last = Choice(choice.radius[own], choice.order[own], choice.risk[own])
-        is_level: NDArray[np.bool_] = np.all(frames[own, 9:] == 0.0, axis=1)
-        frames[own] = ladder.frames(sheet, few, frames[own], last, tasks, is_level)
-        bend = np.where(is_level, curvedness[own], curvedness_of(frames[own]))
-        found = select(sheet, ladder, few, frames[own], bend, (low, high, top, noise), links, PASSES, tasks)
-        choice.radius[own], choice.order[own], choice.risk[own] = found.radius, found.order, OF_GAUSSIAN * found.risk
-        has_fit = found.radius >= 0
-        low = np.where(has_fit, np.maximum(low, found.radius - NARROW), low)
-        high = np.where(has_fit, np.minimum(high, found.radius + NARROW), high)
-    tasks.part = 1.0
-    risk = choice.risk[own]
-    with np.errstate(invalid="ignore"):
-        return np.minimum.reduceat(risk[links[1]], links[0][:-1]) / risk
 
 
 def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints, Ints]:
