@@ -140,11 +140,14 @@ def study_meshes(
     With R the pairs of `max_points` vertices of a mesh and their nearest points of the limit, and r, s the distances
     within which these reach every point of the surfaces,
 
-    .. math:: d_{GH} \le \tfrac12 \mathrm{dis} R + r + s,
+    .. math:: d_{GH} \le \tfrac12 \mathrm{dis} R + \max(r, s).
 
-    by the triangle inequality.  From below the difference of the diameters counts.  The nets illustrate Proposition
-    2.44 of the paper: meshes converge exactly if nets of one size do for every ε.  For finite nets this is the same
-    as convergence in the Lipschitz distance.
+    For let every point of a surface have the partner of the nearest chosen point of that surface.  By the triangle
+    inequality two points of the mesh and their partners differ in distance by at most dis R + 2r, two of the limit by
+    dis R + 2s, and one of each by dis R + r + s.  From below the difference of the diameters counts.
+
+    The nets illustrate Proposition 2.44 of the paper: meshes converge exactly if nets of one size do for every ε.  For
+    finite nets this is the same as convergence in the Lipschitz distance.
 
     Examples
     --------
@@ -244,7 +247,7 @@ def _between_surfaces(surface: TriangleMesh, target: TriangleMesh, max_points: i
     chosen = farthest_point_net(surface, size=size, start=_start(surface)).indices
     X, r = _net_in(surface, chosen)
     Y, s = _net_in(*insert_points(target, surface.vertices[chosen]))
-    upper = 0.5 * distortion(np.arange(size), X, Y) + r + s
+    upper = 0.5 * distortion(np.arange(size), X, Y) + max(r, s)
     gap = max(X.diameter - Y.diameter - 2.0 * s, Y.diameter - X.diameter - 2.0 * r)
     return max(0.5 * gap, 0.0), upper
 
