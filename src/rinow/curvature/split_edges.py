@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.creases import EdgeTurnings
+from rinow.curvature.rounding import coordinate_rounding
 from rinow.mesh import TriangleMesh
 
-__all__ = ["LONGEST", "SplitEdges", "position_rounding"]
+__all__ = ["LONGEST", "SplitEdges"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -36,13 +37,6 @@ LONGEST = 7
 """Vertices on an edge that was halved three times; longer rows are lines of a cone or of another ruled surface."""
 
 
-def position_rounding(mesh: TriangleMesh) -> float:
-    """Rounding of the coordinates: that of 24 bits if all of them are numbers of 24 bits, as most files keep them."""
-    V = mesh.vertices[mesh.vertex_is_finite]
-    largest = float(np.abs(V).max(initial=0.0))
-    return largest * (2.0**-24 if 0.0 < largest < 1e38 and np.array_equal(V, V.astype(np.float32)) else 2.0**-53)
-
-
 class SplitEdges:
     """The straight lines that a mesh bends along, as far as they run between vertices that bend it to all sides.
 
@@ -59,14 +53,14 @@ class SplitEdges:
         self.on_edges, self.inside, self.corners = np.zeros((3, n), np.bool_)
         is_inner = t.vertex_is_manifold & ~t.vertex_is_boundary
         with np.errstate(divide="ignore", invalid="ignore"):
-            least = np.minimum(FLAT, DEFECT * position_rounding(mesh) / np.sqrt(mesh.vertex_areas))
+            least = np.minimum(FLAT, DEFECT * coordinate_rounding(mesh) / np.sqrt(mesh.vertex_areas))
         flat = is_inner & (np.abs(mesh.vertex_angle_defects) <= least)
         if self._rounding > 2.0**-50 * mesh.diagonal or flat.any():
             self._find(is_inner)
 
     @cached_property
     def _rounding(self) -> float:
-        return ROUNDINGS * position_rounding(self.mesh)
+        return ROUNDINGS * coordinate_rounding(self.mesh)
 
     @cached_property
     def bends(self) -> Bools:
