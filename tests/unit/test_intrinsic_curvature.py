@@ -65,10 +65,10 @@ def test_one_step_is_a_regression_over_an_unrolled_neighbourhood(make, reach):
     def length(a, b):
         return math.dist(shape.vertices[a], shape.vertices[b])
 
-    radii, t = reach * flow.spacing, mesh.topology
-    ball = (radii, flow.areas, t.vertex_is_manifold, flow.has_data, flow.metric, 4)
+    radii = reach * flow.spacing
+    ball = (radii, flow.areas, flow.has_data, flow.metric, 4)
     counts, starts = np.empty(n, np.int64), np.zeros(n + 1, np.int64)
-    smoothing.count_rows(*ball, counts)
+    smoothing.count_rows(mesh.topology.vertex_is_manifold, *ball, counts)
     np.cumsum(counts, out=starts[1:])
     columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
     places, has_gap = np.empty((starts[-1], 2)), np.empty(n, np.bool_)

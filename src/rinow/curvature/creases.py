@@ -31,8 +31,8 @@ STRONG_ANGLE, STRONG_NOISE = np.radians(20.0), 4.5
 """Least jump of an edge that starts a line, alone and in standard deviations."""
 WEAK_ANGLE, WEAK_NOISE = np.radians(12.0), 2.5
 """The same for an edge that continues a line."""
-EXACT_ANGLE, EXACT_DEVIATION, EXACT_SHARE = np.radians(8.0), np.radians(0.5), 0.05
-"""Least jump where both sides are flat, the deviation that counts as flat, and how exactly the jump is the turning."""
+EXACT_ANGLE, EXACT_SHARE = np.radians(8.0), 0.05
+"""Least jump where both sides are flat, and how exactly the jump is the turning."""
 EXACT_NOISE = np.radians(1.0)
 """Noise that a mesh with such sides may have around the edge."""
 CREASE_EXPONENT = -0.5

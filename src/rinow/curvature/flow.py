@@ -82,9 +82,9 @@ class CurvatureFlow:
         t, n = self.mesh.topology, self.mesh.n_vertices
         radii = REACH * self.spacing
         weights = self.areas.copy()
-        ball = (radii, self.areas, t.vertex_is_manifold, self.has_data, self.metric, N_BLOCKS)
+        ball = (radii, self.areas, self.has_data, self.metric, N_BLOCKS)
         starts = np.zeros(n + 1, np.int64)
-        smoothing.count_rows(*ball, starts[1:])
+        smoothing.count_rows(t.vertex_is_manifold, *ball, starts[1:])
         np.cumsum(starts, out=starts)
         columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
         places, has_gap, sums = np.empty((starts[-1], 2)), np.empty(n, np.bool_), np.empty(n)
