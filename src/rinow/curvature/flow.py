@@ -79,6 +79,7 @@ class CurvatureFlow:
 
     @cached_property
     def _rows(self) -> tuple[Indices, NDArray[np.int32], Floats, Floats]:
+        """S by rows: offsets, columns and values, and the mean square along an axis of the distance of the data."""
         t, n = self.mesh.topology, self.mesh.n_vertices
         radii = REACH * self.spacing
         weights = self.areas.copy()

@@ -147,6 +147,7 @@ def _seam_size(mesh: TriangleMesh) -> int:
 
 
 def _orientation_notes(mesh: TriangleMesh) -> list[str]:
+    """What was turned so that normals agree and point outwards, or why they cannot agree."""
     t = mesh.topology
     notes: list[str] = []
     n_turned = int(np.count_nonzero(t.face_flips))
