@@ -38,7 +38,8 @@ class GeodesicBalls:
     directions : (n_entries,) ndarray of float
         Direction in which the shortest path leaves the source, in radians: the angle along the surface from a fixed
         edge, counter-clockwise in the orientation of most faces of the component.  At an interior vertex it lies in
-        [0, total angle), at a boundary vertex it counts from the boundary edge.  It is nan for the source itself and
+        [0, total angle], at a boundary vertex it counts from the boundary edge.  Of several shortest paths it is that
+        of the one whose last half-edge has the least index.  It is nan for the source itself and
         where the faces around the source form no single fan.
     total_angles : (n_sources,) ndarray of float
         Angles of the faces around each source; nan where they form no single fan.
