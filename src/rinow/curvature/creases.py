@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rinow._arrays import read_only
 from rinow.curvature.exact_facets import ends_of_facets
+from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import crease_lines, creases, edge_noise, stencils
 from rinow.mesh import TriangleMesh
 
@@ -19,8 +20,6 @@ Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-N_BLOCKS = 16
-"""Pieces a kernel cuts its work into; each has scratch of its own."""
 NOISE_RINGS = 2
 """Averages over rings of the noise of single stars, which ten edges tell badly."""
 BARRIER_ANGLE = np.radians(35.0)

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.stencils import N_BLOCKS, NEEDLES
 from rinow.kernels import smoothing, stencils
 from rinow.kernels.development import Metric
 from rinow.mesh import IntrinsicMesh, TriangleMesh
@@ -17,14 +18,11 @@ __all__ = ["CurvatureFlow"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-N_BLOCKS = 16
 REACH = 2.1
 """Radius of the small regression in local spacings: the first ring of a regular mesh and a little of the second."""
 BALANCE_SWEEPS = 3
 """Corrections of the weights that make S keep the total curvature; the error at the scale of a few vertices, which is
 what matters, falls by more than half with each."""
-NEEDLES = 3.0
-"""Largest ratio of the mean edge to that of equilateral triangles of the same area that counts."""
 
 
 @dataclass(frozen=True)

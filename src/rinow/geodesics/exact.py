@@ -16,11 +16,14 @@ from rinow.geodesics.unfolding import UnfoldedMesh, unfold
 from rinow.kernels.fans import SINGULAR
 from rinow.mesh import as_mesh
 
-__all__ = ["ExactGeodesics", "GeodesicBalls"]
+__all__ = ["SOURCES_AT_ONCE", "ExactGeodesics", "GeodesicBalls"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Balls = tuple[Indices, NDArray[np.int32], Floats, Floats]
+
+SOURCES_AT_ONCE = 64
+"""Sources asked for together where not all rows are kept: enough for all threads, few enough for the memory."""
 
 
 @dataclass(frozen=True, slots=True)

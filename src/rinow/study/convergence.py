@@ -16,7 +16,7 @@ from rinow.comparison.lipschitz import lipschitz_distance
 from rinow.comparison.surface_points import insert_points
 from rinow.errors import InvalidInputError, InvalidMeshError
 from rinow.geodesics.distances import geodesic_space
-from rinow.geodesics.exact import ExactGeodesics
+from rinow.geodesics.exact import SOURCES_AT_ONCE, ExactGeodesics
 from rinow.mesh import TriangleMesh, as_triangle_mesh, is_mesh_like
 from rinow.metric_space import MetricSpace, as_metric_space, trusted_metric_space
 from rinow.nets.balls import surface_radius_of
@@ -27,7 +27,6 @@ __all__ = ["ConvergenceStudy", "study_meshes", "study_nets"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-_SOURCES_AT_ONCE = 64
 
 COLUMNS = {
     "hausdorff": "Hausdorff distance of the surfaces",
@@ -256,8 +255,8 @@ def _net_in(mesh: TriangleMesh, indices: Indices) -> tuple[MetricSpace, float]:
     """Vertices of a mesh as a space, and the distance within which they reach every point of its surface."""
     geodesics, k = ExactGeodesics(mesh), len(indices)
     D, nearest = np.empty((k, k)), np.full(mesh.n_vertices, np.inf)
-    for first in range(0, k, _SOURCES_AT_ONCE):
-        block = slice(first, first + _SOURCES_AT_ONCE)
+    for first in range(0, k, SOURCES_AT_ONCE):
+        block = slice(first, first + SOURCES_AT_ONCE)
         rows = np.asarray(geodesics.distances(indices[block]))
         D[block] = rows[:, indices]
         nearest = np.minimum(nearest, rows.min(axis=0))
