@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow._arrays import as_floats, in_safe_unit, in_unit
+from rinow._arrays import as_radius, in_safe_unit, in_unit
 from rinow._printing import OneLine
 from rinow.curvature.space_fit import N_ORDERS, fit_at_first
 from rinow.curvature.status import VertexStatus
@@ -140,12 +140,7 @@ def metric_space_curvature(space: Any, *, radius: float | None = None) -> Metric
     True
     """
     D = as_metric_space(space).distances
-    reach = None
-    if radius is not None:
-        value = as_floats(radius, "radius")
-        if value.ndim or not 0.0 < value < np.inf:
-            raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
-        reach = float(value)
+    reach = None if radius is None else as_radius(radius)
     extent = float(D[np.isfinite(D)].max())
     if extent and not 1.0 / LARGEST_DIAMETER < extent < LARGEST_DIAMETER:
         raise InvalidInputError(f"distances reach {extent:.3g}, and their curvature is no number; scale them.")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow._arrays import as_floats
+from rinow._arrays import as_radius
 from rinow._executor import Executor
 from rinow._printing import OneLine
 from rinow.curvature.angle_defect import angle_defect
@@ -217,14 +217,12 @@ def _chosen_method(method: str, quality: str, mesh: TriangleMesh | IntrinsicMesh
 
 
 def _checked_radius(radius: float, method: str) -> float:
-    value = as_floats(radius, "radius")
-    if value.ndim or not 0.0 < value < np.inf:
-        raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
+    length = as_radius(radius)
     if method not in WITH_RADIUS:
         raise InvalidInputError(
             f"radius = {radius!r} is not for method {method!r}, which takes the star of each vertex; leave it out."
         )
-    return float(value)
+    return length
 
 
 def _estimate(
