@@ -66,12 +66,15 @@ def best_end(ball, begin, end, radius, towards, full, widest, weight):
 
 @kernel
 def write_lines(ball, begin, end, radius, first, full, entries, bends):
-    """Write the ends of four lines, the first one towards `first`; returns their cost and how far they are left."""
+    """Write the ends of four lines, the first one towards `first`, and their bends; their cost, how far they are left.
+
+    Each end that is not there costs `MISSING`.
+    """
     total, leftness = 0.0, 0.0
     for k in range(LINES):
         towards = first + 0.5 * full * k / LINES
         a, cost, left = best_end(ball, begin, end, radius, towards, full, SECTOR * full, ASIDE_WEIGHT)
-        entries[k], entries[k + LINES] = a, -1
+        entries[k], entries[k + LINES], bends[k] = a, -1, np.nan
         total, leftness = total + cost, leftness + left
         if a >= 0:
             straight = ball[2][a] + 0.5 * full
