@@ -1,6 +1,10 @@
 """Surfaces without positions: meshes by their edge lengths, and matrices of distances."""
 
+import math
+
 import numpy as np
+from scipy.sparse.csgraph import shortest_path
+from scipy.spatial.distance import pdist, squareform
 
 from rinow import IntrinsicMesh, SpaceForm
 
@@ -66,3 +70,38 @@ def cone(angle, n, seed):
     turn = np.minimum(np.minimum(turn, angle - turn), np.pi)
     D = np.sqrt((r[:, None] - r) ** 2 + 4 * r[:, None] * r * np.sin(turn / 2) ** 2)
     return 0.5 * (D + D.T)
+
+
+def hops(rng, n, share=0.3):
+    """Numbers of steps in a random tree with further edges."""
+    edges = np.triu((rng.random((n, n)) < share).astype(float), 1)
+    for i in range(1, n):
+        edges[rng.integers(i), i] = 1.0
+    return shortest_path(edges, directed=False, unweighted=True)
+
+
+def random_space(rng, n):
+    """Distances of n random points: plane, line with repeated points, hops in a graph, or generic."""
+    kind = rng.integers(4)
+    if kind == 0:
+        return squareform(pdist(rng.random((n, 2)))) if n > 1 else np.zeros((1, 1))
+    if kind == 1:
+        places = rng.integers(0, 5, n).astype(float)
+        return np.abs(places[:, None] - places)
+    if kind == 2:
+        return hops(rng, n)
+    D = rng.uniform(0.5, 1.0, (n, n))
+    D = np.minimum(D, D.T)
+    np.fill_diagonal(D, 0.0)
+    return D
+
+
+def polygon(n):
+    """Vertices of a regular polygon on a circle of length 2π."""
+    steps = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    return np.minimum(steps, n - steps) * (2 * math.pi / n)
+
+
+def segment(n, length):
+    """Equally spaced points of a segment."""
+    return np.abs(np.subtract.outer(*[np.linspace(0, length, n)] * 2))

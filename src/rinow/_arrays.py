@@ -20,6 +20,7 @@ __all__ = [
     "as_indices",
     "as_points",
     "as_quadruples",
+    "as_radius",
     "bounding_box",
     "in_safe_unit",
     "in_unit",
@@ -71,6 +72,14 @@ def as_number(value: Any, name: str) -> float:
     if number.ndim:
         raise InvalidInputError(f"{name} has shape {number.shape}; give one number.")
     return float(number)
+
+
+def as_radius(radius: Any) -> float:
+    """A positive length, where the caller may also leave the choice to the data."""
+    value = as_floats(radius, "radius")
+    if value.ndim or not 0.0 < value < np.inf:
+        raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
+    return float(value)
 
 
 def in_safe_unit(lengths: Floats) -> tuple[Floats, int]:

@@ -44,6 +44,9 @@ that what a thinner shadow hides still counts as seen."""
 DETOUR = 1e-12
 """A geodesic is dropped when another path is shorter by this share: above the rounding of long sums."""
 
+EQUAL_PATHS = 1e-14
+"""Paths are equally long when they differ by this share: what rounding leaves of the length of a geodesic."""
+
 ZERO_EDGE = 1e-60
 """An edge below this share of the longest one is a point: still far from underflow when its length is squared twice."""
 

@@ -38,7 +38,7 @@ def test_spheres_converge_in_every_distance(spheres):
     # the geodesics of the icosahedron itself are not yet in the asymptotic range
     assert orders["net_gromov_hausdorff"] > 1.3
     assert orders["net_lipschitz"] > 1.3
-    assert orders["gromov_hausdorff"] > 0.7  # r + s, the radii of the nets, is O(h)
+    assert orders["gromov_hausdorff"] > 0.7  # max(r, s), the larger radius of the nets, is O(h)
     for name in COLUMNS:
         assert (np.diff(getattr(spheres, name)[:, 1]) < 0).all()
 
@@ -68,6 +68,25 @@ def test_a_mesh_is_at_distance_0_from_itself():
     assert study.net_gromov_hausdorff[0, 1] == study.net_lipschitz[0, 1] == 0.0
     # all vertices are in the net: only the insides of the faces remain
     assert study.gromov_hausdorff[0, 1] <= 2 * study.scale[0] / 3**0.5 + 1e-12
+
+
+def sheet(n, side):
+    """A flat square of n by n squares."""
+    i, j = np.indices((n + 1, n + 1)).reshape(2, -1)
+    a = np.flatnonzero((i < n) & (j < n))
+    faces = np.concatenate([np.stack([a, a + n + 1, a + n + 2], 1), np.stack([a, a + n + 2, a + 1], 1)])
+    return (np.stack([i, j, 0 * i], axis=1) / n - [0.5, 0.5, 0.0]) * side, faces
+
+
+def test_a_sheet_is_at_half_the_difference_of_the_diameters_from_a_larger_one():
+    """x and 1.3 x differ in distance by 0.3 diam at most, and no correspondence does better than the diameters."""
+    study = study_meshes([sheet(8, 2.0)], sheet(32, 2.6), net_size=5, time_limit=1)
+    lower, upper = study.gromov_hausdorff[0]
+    truth = 0.15 * 8**0.5
+    assert lower <= truth <= upper
+    # Corners of the larger sheet are just as far from those of the smaller one.  Covering radii are bounds, off by less
+    # than the longest edge there.  The radius of the smaller sheet, 0.2, would be beyond that.
+    assert upper <= truth + 2.6 / 32 * 2**0.5
 
 
 def test_nets_converge_to_their_space():

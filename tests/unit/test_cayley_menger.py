@@ -1,18 +1,18 @@
 """Simplices from their edge lengths against exact determinants, coordinates and golden values."""
 
 import itertools
-import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import rinow
+from golden_files import golden
 from naive import cayley_menger as naive
+from quadruple_shapes import matrix
 from rinow.kernels import triangles
 
-GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "quadruples.json").read_text())
+GOLDEN = golden("quadruples")
 NO_LENGTHS = [
     [[0, 1, 1], [1, 0, np.nan], [1, np.nan, 0]],
     [[0, 1, 1], [1, 0, -1], [1, -1, 0]],
@@ -21,13 +21,6 @@ NO_LENGTHS = [
     [[0, 1, np.inf], [1, 0, np.inf], [np.inf, np.inf, 0]],
 ]
 SQUARE = 2 * np.abs(np.sin(np.subtract.outer(range(4), range(4)) * math.pi / 4))
-
-
-def matrix(distances, n):
-    """Symmetric matrix from the upper triangle, row by row."""
-    D = np.zeros((n, n))
-    D[np.triu_indices(n, 1)] = distances
-    return D + D.T
 
 
 def simplices(n, dimension, count, seed):

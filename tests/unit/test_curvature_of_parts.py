@@ -9,6 +9,7 @@ import shapes
 from rinow import VertexStatus
 from rinow.curvature.barriers import crease_barriers
 from rinow.curvature.strays import stray_vertices
+from surface_methods import curvature
 
 METHODS = ("auto", "sectional")
 
@@ -25,10 +26,6 @@ def prism_of_a_cylinder(angles, radius=1.0, height=3.0, mixed=False):
         F += [(a, b, n + a), (b, n + b, n + a)] if turned else [(a, b, n + b), (a, n + b, n + a)]
         F += [(2 * n + 1, n + a, n + b), (2 * n, b, a)]
     return V, np.array(F)
-
-
-def curvature(part, **options):
-    return rinow.surface_curvature((part.vertices, part.faces), **options)
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -2,13 +2,13 @@
 
 import math
 
-import numba
 import numpy as np
 import pytest
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import pdist, squareform
 
 import metric_shapes
+from clocks import SLOW
 from naive import correspondences as naive
 from rinow.comparison.clock import Clock
 from rinow.comparison.gromov_hausdorff import first_interval
@@ -16,7 +16,6 @@ from rinow.comparison.large_subsets import FewPoints, raise_by_few_points
 from rinow.kernels.subset_maps import FITS, GIVEN_UP, REFUTED
 
 pytestmark = pytest.mark.usefixtures("compiled_searches")
-SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes")
 UNLIMITED = 10**7
 
 

@@ -10,6 +10,7 @@ import shapes
 from metric_shapes import flat_torus, hyperbolic_patch
 from naive import closed_stars
 from naive import geodesics as naive_geodesics
+from plates import perforated_plate
 from rinow import InvalidInputError, TriangleMesh, VertexStatus, surface_curvature
 from rinow.kernels import geodesic_stars as kernels
 
@@ -83,6 +84,19 @@ def test_order_orientation_and_unit_do_not_matter(method):
     p = rng.permutation(len(V))
     again = surface_curvature((V[p], np.argsort(p)[F[:, ::-1]]), method=method, radius=0.4).gaussian
     np.testing.assert_allclose(again, K[p], rtol=1e-9)
+
+
+@pytest.mark.parametrize("scale", [3.7, 1e-3])
+@pytest.mark.parametrize(("sides", "method"), [(5, "robinson"), (6, "robinson"), (6, "wald")])
+def test_ties_on_symmetric_plates_are_not_decided_by_rounding(sides, method, scale):
+    # In rows of holes many vertices are at one distance from a vertex, some of them by two ways of one length.
+    V, F, _ = perforated_plate(5, sides)
+    c, d = (
+        surface_curvature((s * V, F), method=method, radius=1.2 * s if method == "wald" else None) for s in (1.0, scale)
+    )
+    np.testing.assert_array_equal(d.status, c.status)
+    size = np.nanmax(np.abs(c.gaussian))
+    np.testing.assert_allclose(d.gaussian * scale**2, c.gaussian, rtol=1e-9, atol=1e-9 * size)
 
 
 @pytest.mark.parametrize("method", METHODS)

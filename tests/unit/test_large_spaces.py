@@ -2,12 +2,11 @@
 
 import math
 
-import numba
 import numpy as np
 import pytest
 from scipy.spatial.distance import pdist, squareform
 
-from clocks import Looks
+from clocks import SLOW, Looks
 from rinow import MetricSpace, TriangleMesh, distance_matrix, distortion, gromov_hausdorff
 from rinow.comparison import large, surfaces
 from rinow.comparison.clock import Clock
@@ -19,7 +18,6 @@ from rinow.errors import InvalidMeshError, NotAMetricError
 from rinow.kernels import dives
 
 pytestmark = pytest.mark.usefixtures("compiled_searches")
-SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="dives in plain Python take minutes")
 
 FOREVER = Clock(math.inf)
 

@@ -1,15 +1,14 @@
 """Lipschitz distance and dilatation: brute force, closed forms, certificates, bad input."""
 
-import json
 import math
-from pathlib import Path
 
-import numba
 import numpy as np
 import pytest
 from scipy.sparse import csr_array
 from scipy.spatial.distance import pdist, squareform
 
+from clocks import SLOW
+from golden_files import golden
 from naive import correspondences as naive
 from rinow import MetricSpace, dilatation, gromov_hausdorff, lipschitz_distance, uniform_distance
 from rinow.comparison import large_bijections, lipschitz
@@ -19,8 +18,6 @@ from rinow.comparison.interval import Interval
 from rinow.comparison.large_bijections import offer_bijections
 from rinow.errors import InvalidInputError, NotAMetricError
 
-GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "gromov_hausdorff.json").read_text())
-SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes")
 LINE = [[0, 1, 2], [1, 0, 1], [2, 1, 0]]
 
 
@@ -48,7 +45,9 @@ def test_equals_all_permutations(seed):
     assert result.upper == naive.lipschitz_distance(X.tolist(), Y.tolist())
 
 
-@pytest.mark.parametrize("case", [c for c in GOLDEN if c.get("lipschitz")], ids=lambda case: str(case["name"]))
+@pytest.mark.parametrize(
+    "case", [c for c in golden("gromov_hausdorff") if c.get("lipschitz")], ids=lambda case: str(case["name"])
+)
 def test_values_of_closed_forms_are_found_and_proved(case):
     result = lipschitz_distance(case["DX"], case["DY"])
     check_certificate(result, case["DX"], case["DY"])

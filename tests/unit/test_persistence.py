@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import pdist, squareform
 
+from metric_shapes import polygon
 from naive import persistence as naive
 from rinow import gromov_hausdorff
 from rinow.comparison import persistence
@@ -16,12 +17,6 @@ from rinow.comparison.gromov_hausdorff import first_interval
 from rinow.comparison.persistence import NETS, bottleneck_bound, diagram, persistence_bound, raise_by_persistence
 
 HOLES = pytest.mark.skipif(not persistence.gudhi_installed(), reason="the extra `persistence` is not installed")
-
-
-def polygon(n):
-    """Vertices of a regular polygon on a circle of length 2π."""
-    steps = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
-    return np.minimum(steps, n - steps) * (2 * math.pi / n)
 
 
 def line(places):

@@ -2,12 +2,13 @@
 
 import math
 
-import numba
 import numpy as np
 import pytest
 from pysat.solvers import Solver
 from scipy.spatial.distance import pdist, squareform
 
+from clocks import SLOW
+from metric_shapes import polygon, segment
 from naive import unit_propagation as naive
 from rinow import find_approximation, find_epsilon_isometry, gromov_hausdorff, lipschitz_distance
 from rinow.comparison import satisfiability, steps
@@ -18,19 +19,7 @@ from rinow.comparison.refutation import is_refuted
 from rinow.comparison.satisfiability import Satisfiability
 from rinow.comparison.subsets import SubsetBound
 
-SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes")
 FOREVER = Clock(math.inf)
-
-
-def polygon(n):
-    """Vertices of a regular polygon on a circle of length 2π."""
-    steps = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
-    return np.minimum(steps, n - steps) * (2 * math.pi / n)
-
-
-def segment(n):
-    """Equally spaced points of a segment of length π."""
-    return np.abs(np.subtract.outer(*[np.linspace(0, math.pi, n)] * 2))
 
 
 def random_formula(rng, n_variables=9, n_clauses=34, share=0.1):
@@ -134,7 +123,7 @@ def test_refutations_of_levels(kind):
 @SLOW
 def test_result_tells_whether_the_proof_was_checked(monkeypatch):
     """A circle is not a segment; a wrong proof is not used, and one that was not checked in time is said to be so."""
-    X, Y = polygon(12), segment(13)
+    X, Y = polygon(12), segment(13, math.pi)
     level = 2 * gromov_hausdorff(X, Y, time_limit=math.inf).upper
 
     def closed(*, verify, right=None):
@@ -154,7 +143,7 @@ def test_result_tells_whether_the_proof_was_checked(monkeypatch):
 
 @SLOW
 def test_verified_distances():
-    for X, Y in ((polygon(7), segment(6)), (polygon(6), polygon(6) * 1.5)):
+    for X, Y in ((polygon(7), segment(6, math.pi)), (polygon(6), polygon(6) * 1.5)):
         plain, verified = (gromov_hausdorff(X, Y, time_limit=math.inf, verify=v) for v in (False, True))
         assert verified.upper == plain.upper
         assert verified.exact
@@ -167,7 +156,7 @@ def test_verified_distances():
 @SLOW
 def test_maps_of_subsets_are_verified():
     """Maps of a circle to a segment: arc consistency stops below the least distortion."""
-    bound = SubsetBound(polygon(12), segment(13), 0.0, verify=True)
+    bound = SubsetBound(polygon(12), segment(13, math.pi), 0.0, verify=True)
     bound.improve(Clock(600.0))
     assert bound.interval.by == "satisfiability"
     assert bound.interval.proof_checked is True
@@ -175,7 +164,7 @@ def test_maps_of_subsets_are_verified():
 
 def test_a_no_is_verified(monkeypatch):
     """Of an approximation and of a map that arc consistency leaves open; a wrong proof leaves the question open."""
-    X, Y = polygon(7), segment(6)
+    X, Y = polygon(7), segment(6, math.pi)
     questions = [(find_approximation, (X, Y, 0.0, 1.5)), (find_epsilon_isometry, (X, Y, 1.4))]
     for ask, arguments in questions:
         plain, verified = (ask(*arguments, time_limit=math.inf, verify=v) for v in (False, True))

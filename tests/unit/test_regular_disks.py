@@ -10,10 +10,9 @@ import pytest
 import rinow
 from metric_shapes import sampled
 from naive import regular_disks as naive
+from quadruple_shapes import PAIRS
 from rinow import regular_radius
 from rinow.kernels import spaceform_model
-
-PAIRS = np.triu_indices(4, 1)
 
 
 def with_side_points(k, radius, seed):

@@ -1,8 +1,6 @@
 """Robinson's approximation: golden values, closed special forms, intervals that hold the curvature."""
 
-import json
 import math
-from pathlib import Path
 
 import numba
 import numpy as np
@@ -10,10 +8,10 @@ import pytest
 
 import rinow
 from naive import robinson as naive
+from quadruple_shapes import GOLDEN
 from rinow.kernels import spaceform
 
 EPS = 2.0**-53
-GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "quadruples.json").read_text())["quadruples"]
 COLUMN = np.array([[-1, 0, 1, 2], [0, -1, 3, 4], [1, 3, -1, 5], [2, 4, 5, -1]])
 
 

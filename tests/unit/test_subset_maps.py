@@ -2,12 +2,13 @@
 
 import math
 
-import numba
 import numpy as np
 import pytest
 from scipy.spatial.distance import pdist, squareform
 
 import metric_shapes
+from clocks import SLOW
+from metric_shapes import polygon
 from naive import correspondences as naive
 from rinow import gromov_hausdorff
 from rinow.comparison.clock import Clock
@@ -15,7 +16,6 @@ from rinow.comparison.subsets import SubsetBound, bound_by_subsets, spread_point
 from rinow.errors import InvalidInputError
 
 pytestmark = pytest.mark.usefixtures("compiled_searches")
-SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes")
 PATIENT = 600.0
 """Seconds that no machine needs for these sizes."""
 
@@ -23,12 +23,6 @@ PATIENT = 600.0
 def cloud(rng, n):
     """Distances of random points of the plane."""
     return squareform(pdist(rng.random((n, 2))))
-
-
-def polygon(n):
-    """Vertices of a regular polygon on a circle of length 2π."""
-    steps = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
-    return np.minimum(steps, n - steps) * (2 * math.pi / n)
 
 
 @pytest.mark.parametrize("seed", range(40, 52))

@@ -12,6 +12,7 @@ from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.strays import spikes
 from rinow.curvature.unresolved import with_detail
 from rinow.kernels import covers
+from surface_methods import relative_error
 
 
 def graded_hill(n=4000, seed=21):
@@ -40,10 +41,6 @@ def moved(mesh, heights):
 def torus(n=3000):
     shape = shapes.irregular_torus(n)
     return TriangleMesh(shape.vertices, shape.faces), shape.gaussian
-
-
-def relative_error(found, exact):
-    return np.linalg.norm(found - exact) / np.linalg.norm(exact)
 
 
 def assert_no_detail(mesh):

@@ -7,6 +7,7 @@ import rinow
 import shapes
 from rinow.curvature.sectional import sectional
 from rinow.curvature.unresolved import single_rings, with_detail
+from surface_methods import relative_error
 
 
 def waves(length):
@@ -62,10 +63,6 @@ def folded_sphere(height):
     H = 0.5 * np.trace(form, axis1=1, axis2=2)
     K = 2.0 * H**2 - 0.5 * np.einsum("nij,nji->n", form, form)
     return V, K, H, normals
-
-
-def relative_error(found, exact):
-    return np.linalg.norm(found - exact) / np.linalg.norm(exact)
 
 
 @pytest.mark.parametrize("noise", (0.001, 0.002, 0.005, 0.02, 0.1))

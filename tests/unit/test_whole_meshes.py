@@ -2,12 +2,11 @@
 
 import math
 
-import numba
 import numpy as np
 import pytest
 from scipy.sparse.csgraph import dijkstra
 
-from clocks import Looks
+from clocks import SLOW, Looks
 from rinow import TriangleMesh, distortion, gromov_hausdorff
 from rinow.comparison import surfaces
 from rinow.comparison.clock import Clock
@@ -18,7 +17,6 @@ from rinow.geodesics.edge_graph import edge_graph
 from rinow.kernels import distortion_bounds
 
 pytestmark = pytest.mark.usefixtures("compiled_searches")
-SLOW = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="rows of all vertices in plain Python take minutes")
 
 FOREVER = Clock(math.inf)
 

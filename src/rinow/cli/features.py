@@ -67,6 +67,7 @@ def features(
 
 
 def _write_picture(path: Path, study: FeatureStudy, *, title: str, up: str) -> None:
+    """The surface in the colours of the mean angle of the creases at each vertex."""
     from rinow.io.atomic import replacing
     from rinow.report.figures import surface_figure, write_surface_picture
 
@@ -109,6 +110,7 @@ def _record(
 
 
 def _print(title: str, study: FeatureStudy, seconds: float) -> None:
+    """Numbers and angles of the features."""
     from rich.table import Table
 
     table = Table(title=title)

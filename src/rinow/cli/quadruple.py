@@ -135,6 +135,7 @@ def _robinson(d: np.ndarray) -> dict[str, Any] | None:
 
 
 def _print(record: dict[str, Any]) -> None:
+    """A row for each embedding curvature; below it why there are so many, and what else is known."""
     table = Table("curvature", "kind", "condition", "coordinates in the model of that curvature")
     for value in record["values"]:
         points = "\n".join("(" + ", ".join(f"{x:.6g}" for x in point) + ")" for point in value["coordinates"])

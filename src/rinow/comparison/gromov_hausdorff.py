@@ -193,19 +193,35 @@ def gromov_hausdorff(
         upper, exact = min(upper + max(radii), 0.5 * max(diameters)), False
         share = SHARE_OF_SUBSETS if meshes and sum(beyond) == 0.0 else 1.0
         proved = _proved_beyond(samples, proved, beyond, clock.part(share * clock.left), verify=verify)
-    pairs = np.stack([samples[0].indices[interval.pairs[:, 0]], samples[1].indices[interval.pairs[:, 1]]], axis=1)
-    if samples[0].metric and samples[1].metric and radii != beyond:
+    pairs = _named_pairs(samples, interval)
+    if meshes and radii != beyond:
         proved = _proved_by_eccentricities(samples, proved, beyond, clock.part(SHARE_OF_ECCENTRICITIES * clock.left))
-        whole = whole_relation(*samples, interval.pairs, clock)
-        if whole is not None:
-            whole.improve(clock)
-            if 0.5 * whole.upper + max(beyond) < upper:
-                upper, radii, pairs = 0.5 * whole.upper + max(beyond), beyond, whole.pairs(*samples)
-        if radii != beyond and not interval.closed and not clock.over:  # what the whole relation left
-            _compare(samples[0].distances, samples[1].distances, interval, clock)
-            upper = min(upper, 0.5 * interval.upper + max(radii))
-            pairs = np.stack([sample.indices[k] for sample, k in zip(samples, interval.pairs.T, strict=True)], axis=1)
+        upper, radii, pairs = _with_all_vertices(samples, interval, upper, beyond, clock)
     return GromovHausdorff(proved.lower, upper, exact, pairs, proved.by, radii, proved.proof_checked)
+
+
+def _named_pairs(samples: tuple[Sample, Sample], interval: Interval) -> Indices:
+    """(k, 2): the pairs of points of the samples, as points of the spaces or vertices of the meshes."""
+    return np.stack([sample.indices[k] for sample, k in zip(samples, interval.pairs.T, strict=True)], axis=1)
+
+
+def _with_all_vertices(
+    samples: tuple[Sample, Sample], interval: Interval, upper: float, beyond: tuple[float, float], clock: Clock
+) -> tuple[float, tuple[float, float], Indices]:
+    """An upper bound for two meshes by a relation of all vertices, or by nets that are compared longer.
+
+    The radii within which its pairs reach all points, and these pairs.
+    """
+    whole = whole_relation(*samples, interval.pairs, clock)
+    if whole is not None:
+        whole.improve(clock)
+        if 0.5 * whole.upper + max(beyond) < upper:
+            return 0.5 * whole.upper + max(beyond), beyond, whole.pairs(*samples)
+    radii = samples[0].covering_radius + beyond[0], samples[1].covering_radius + beyond[1]
+    if not interval.closed and not clock.over:  # what the whole relation left
+        _compare(samples[0].distances, samples[1].distances, interval, clock)
+        upper = min(upper, 0.5 * interval.upper + max(radii))
+    return upper, radii, _named_pairs(samples, interval)
 
 
 def _checked_radii(covering_radii: tuple[float, float]) -> tuple[float, float]:

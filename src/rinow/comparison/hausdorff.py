@@ -175,6 +175,7 @@ def _between_points(P: Floats, Q: Floats) -> HausdorffDistance:
 
 
 def _between_subsets(D: Floats, A: Any, B: Any) -> HausdorffDistance:
+    """The exact distance of two lists of points of one space; the witnesses are points of the space."""
     chosen: list[Indices] = []
     for name, value in (("A", A), ("B", B)):
         indices = as_indices(value, len(D), name)
@@ -198,6 +199,7 @@ def _row_minima(D: Floats, rows: Indices, columns: Indices) -> tuple[Floats, Ind
 
 
 def _between_surfaces(A: TriangleMesh | Floats, B: TriangleMesh | Floats, tolerance: float) -> HausdorffDistance:
+    """The interval between two sets of which one at least is a surface, in their own unit and place."""
     sets = [X.vertices[X.topology.vertex_is_used] if isinstance(X, TriangleMesh) else X for X in (A, B)]
     for name, points in zip("AB", sets, strict=True):
         if not len(points):

@@ -174,7 +174,7 @@ def whole_relation(X: Sample, Y: Sample, pairs: Indices, clock: Clock) -> WholeR
     f[pairs[:, 0]] = pairs[:, 1]
     net, images = mx.place[X.positions[chosen]], my.place[Y.positions[f[chosen]]]
     rows, rng = X.rows[np.ix_(chosen, mx.order)], np.random.default_rng(24)
-    found = _better_images(mx, my, net, rows, images, rng, clock.part(SHARE_OF_IMAGES * clock.left))
+    found = _better_images(my, net, rows, images, rng, clock.part(SHARE_OF_IMAGES * clock.left))
     if found is None:
         return None
     images, image_rows = found
@@ -194,7 +194,7 @@ def whole_relation(X: Sample, Y: Sample, pairs: Indices, clock: Clock) -> WholeR
 
 
 def _better_images(
-    X: EdgeMetric, Y: EdgeMetric, net: Indices, rows: Floats, images: Indices, rng: np.random.Generator, clock: Clock
+    Y: EdgeMetric, net: Indices, rows: Floats, images: Indices, rng: np.random.Generator, clock: Clock
 ) -> tuple[Indices, Floats] | None:
     """Images of the net and their rows: the best of some rounds, in each of which the last ones are landmarks."""
     best, least = None, np.inf

@@ -68,6 +68,7 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
 
 
 def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> Estimate:
+    """The estimate with its Gaussian curvature averaged with that of edge lengths where these may gain."""
     k1, k2, noise, spacing, risk = estimate.k1, estimate.k2, estimate.noise, estimate.spacing, estimate.risk
     if k1 is None or k2 is None or noise is None or spacing is None or risk is None:
         return estimate
@@ -92,6 +93,7 @@ def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> 
 
 
 def _chord_errors(mesh: TriangleMesh, estimate: Estimate) -> Floats:
+    """(n_vertices,): relative error of K that the chords of the edges make, by the normal curvatures along them."""
     t, errors = mesh.topology, np.empty(mesh.n_vertices)
     principal: list[Any] = [estimate.k1, estimate.k2, estimate.direction1, estimate.direction2, errors[:0, None]]
     frames = monge.PrincipalFrames(*principal)

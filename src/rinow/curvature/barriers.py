@@ -57,6 +57,7 @@ def crease_barriers(mesh: TriangleMesh) -> Bools:
 
 
 def _certain_lines(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:
+    """(n_edges,): creases on lines with enough edges that are clear of noise, or with ends of large flat facets."""
     edges, kept = mesh.topology.edges, lines.is_crease
     labels = crease_lines.line_components(kept, edges, mesh.n_vertices)
     apart = kept & ~np.all(_around_spikes(mesh, kept)[edges], axis=1)

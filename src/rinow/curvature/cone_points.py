@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import cone_points
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
@@ -14,8 +15,6 @@ Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-N_BLOCKS = 16
-"""Pieces a kernel cuts its work into; each has scratch of its own."""
 LEAST_DEFECT = 0.08
 """Defect in radians below which nothing is called a cone point: half-angles up to 81°."""
 DEFECT_NOISE = 12.0

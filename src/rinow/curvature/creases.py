@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rinow._arrays import read_only
 from rinow.curvature.exact_facets import ends_of_facets
+from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import crease_lines, creases, edge_noise, stencils
 from rinow.mesh import TriangleMesh
 
@@ -19,8 +20,6 @@ Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-N_BLOCKS = 16
-"""Pieces a kernel cuts its work into; each has scratch of its own."""
 NOISE_RINGS = 2
 """Averages over rings of the noise of single stars, which ten edges tell badly."""
 BARRIER_ANGLE = np.radians(35.0)
@@ -31,8 +30,8 @@ STRONG_ANGLE, STRONG_NOISE = np.radians(20.0), 4.5
 """Least jump of an edge that starts a line, alone and in standard deviations."""
 WEAK_ANGLE, WEAK_NOISE = np.radians(12.0), 2.5
 """The same for an edge that continues a line."""
-EXACT_ANGLE, EXACT_DEVIATION, EXACT_SHARE = np.radians(8.0), np.radians(0.5), 0.05
-"""Least jump where both sides are flat, the deviation that counts as flat, and how exactly the jump is the turning."""
+EXACT_ANGLE, EXACT_SHARE = np.radians(8.0), 0.05
+"""Least jump where both sides are flat, and how exactly the jump is the turning."""
 EXACT_NOISE = np.radians(1.0)
 """Noise that a mesh with such sides may have around the edge."""
 CREASE_EXPONENT = -0.5

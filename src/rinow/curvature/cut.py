@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from rinow.curvature.barriers import crease_barriers
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.exact_facets import POSITION_ROUNDING
 from rinow.curvature.facets import take_facets
+from rinow.curvature.rounding import file_rounding
 from rinow.kernels import cuts
 from rinow.mesh import TriangleMesh
 
@@ -97,16 +97,16 @@ def one_sided(
     estimate = method(cut, progress=report, **options)
     take_facets(cut, estimate, cut.topology.vertex_is_boundary | ~np.isfinite(estimate.spread))
     on_crease = np.bincount(origin, minlength=n) > 1
-    order = np.lexsort((np.arange(n_cut), -cut.vertex_areas, -_bending(estimate, cut.diagonal), origin))
+    order = np.lexsort((np.arange(n_cut), -cut.vertex_areas, -_bending(estimate, file_rounding(cut)), origin))
     return estimate.at(order[np.searchsorted(origin[order], np.arange(n))]), on_crease
 
 
-def _bending(estimate: Estimate, diagonal: float) -> NDArray[np.float64]:
-    """Squared curvedness at each vertex; 0 where noise explains the sagitta over the ball, -1 without a value."""
+def _bending(estimate: Estimate, rounding: float) -> NDArray[np.float64]:
+    """Squared curvedness at each vertex; 0 where noise or rounding explains the sagitta of its ball, -1 if unknown."""
     mean = np.zeros_like(estimate.gaussian) if estimate.mean is None else estimate.mean
     noise = np.zeros_like(mean) if estimate.noise is None else np.nan_to_num(estimate.noise)
     with np.errstate(invalid="ignore"):
         squared = 2.0 * mean**2 - estimate.gaussian
         sagitta = 0.5 * np.sqrt(np.maximum(squared, 0.0)) * estimate.radius**2
-        bends = sagitta > NOISE * np.maximum(noise, POSITION_ROUNDING * diagonal)
+        bends = sagitta > NOISE * np.maximum(noise, rounding)
     return np.where(np.isfinite(squared), np.where(bends, squared, 0.0), -1.0)

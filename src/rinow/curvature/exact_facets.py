@@ -5,17 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.rounding import file_rounding
 from rinow.mesh import TriangleMesh
 from rinow.topology import clusters
 
-__all__ = ["POSITION_ROUNDING", "ends_of_facets"]
+__all__ = ["ends_of_facets"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-POSITION_ROUNDING = 4.0 * 2.0**-24
-"""Error of positions over the size of the mesh: files keep 24 bits."""
 LARGE = 8
 """Faces of a facet that noise does not make flat by chance."""
 SHARP, TURNED = np.radians(60.0), np.radians(30.0)
@@ -45,7 +44,7 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     steps, whose treads are flat facets of a surface that is none.
     """
     with np.errstate(invalid="ignore"):
-        is_sharp, is_flat = np.abs(turnings) >= SHARP, np.abs(turnings) <= POSITION_ROUNDING * mesh.diagonal * gains
+        is_sharp, is_flat = np.abs(turnings) >= SHARP, np.abs(turnings) <= file_rounding(mesh) * gains
     other = mesh.topology.partners[halfedges]
     is_sharp &= other >= 0
     is_flat &= other >= 0

@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.exact_facets import POSITION_ROUNDING
-from rinow.curvature.split_edges import position_rounding
+from rinow.curvature.rounding import coordinate_rounding, file_rounding
 from rinow.kernels import facet_stars
 from rinow.mesh import TriangleMesh
 
@@ -50,9 +49,9 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool
     rows = np.flatnonzero(mesh.topology.vertex_is_used)
     t, turnings = mesh.topology, EdgeTurnings(mesh)
     gains = turnings.gains[np.isfinite(turnings.gains)]
-    if len(gains) and position_rounding(mesh) * float(np.median(gains)) > BY_CHANCE:
+    if len(gains) and coordinate_rounding(mesh) * float(np.median(gains)) > BY_CHANCE:
         return
-    rounding = POSITION_ROUNDING * mesh.diagonal * turnings.gains
+    rounding = file_rounding(mesh) * turnings.gains
     across, lines = np.empty(len(rows)), np.empty(len(rows), np.intp)
     facet_stars.facet_stars(
         rows, np.nan_to_num(turnings.turnings), rounding, turnings.edge_of_halfedge, turnings.halfedges, t.partners,

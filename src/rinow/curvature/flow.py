@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.stencils import N_BLOCKS, NEEDLES
 from rinow.kernels import smoothing, stencils
 from rinow.kernels.development import Metric
 from rinow.mesh import IntrinsicMesh, TriangleMesh
@@ -17,14 +18,11 @@ __all__ = ["CurvatureFlow"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-N_BLOCKS = 16
 REACH = 2.1
 """Radius of the small regression in local spacings: the first ring of a regular mesh and a little of the second."""
 BALANCE_SWEEPS = 3
 """Corrections of the weights that make S keep the total curvature; the error at the scale of a few vertices, which is
 what matters, falls by more than half with each."""
-NEEDLES = 3.0
-"""Largest ratio of the mean edge to that of equilateral triangles of the same area that counts."""
 
 
 @dataclass(frozen=True)
@@ -79,12 +77,13 @@ class CurvatureFlow:
 
     @cached_property
     def _rows(self) -> tuple[Indices, NDArray[np.int32], Floats, Floats]:
+        """S by rows: offsets, columns and values, and the mean square along an axis of the distance of the data."""
         t, n = self.mesh.topology, self.mesh.n_vertices
         radii = REACH * self.spacing
         weights = self.areas.copy()
-        ball = (radii, self.areas, t.vertex_is_manifold, self.has_data, self.metric, N_BLOCKS)
+        ball = (radii, self.areas, self.has_data, self.metric, N_BLOCKS)
         starts = np.zeros(n + 1, np.int64)
-        smoothing.count_rows(*ball, starts[1:])
+        smoothing.count_rows(t.vertex_is_manifold, *ball, starts[1:])
         np.cumsum(starts, out=starts)
         columns, values, variances = np.empty(starts[-1], np.int32), np.empty(starts[-1]), np.empty(n)
         places, has_gap, sums = np.empty((starts[-1], 2)), np.empty(n, np.bool_), np.empty(n)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow._arrays import as_floats
+from rinow._arrays import as_radius
 from rinow._printing import OneLine
 from rinow.curvature.graph_rows import N_BLOCKS, Arcs, as_arcs
 from rinow.curvature.graph_wald import wald_at_nodes
@@ -161,14 +161,12 @@ def graph_curvature(
 
 
 def _checked_radius(radius: float, kind: str) -> float:
-    value = as_floats(radius, "radius")
-    if value.ndim or not 0.0 < value < np.inf:
-        raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
+    length = as_radius(radius)
     if kind != "wald":
         raise InvalidInputError(
             f"radius = {radius!r} is not for kind {kind!r}, which looks at single edges; leave it out."
         )
-    return float(value)
+    return length
 
 
 def _menger(arcs: Arcs, chosen: Indices, unweighted: bool) -> Floats:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow._arrays import as_floats, in_safe_unit, in_unit
+from rinow._arrays import as_radius, in_safe_unit, in_unit
 from rinow._printing import OneLine
 from rinow.curvature.space_fit import N_ORDERS, fit_at_first
 from rinow.curvature.status import VertexStatus
@@ -140,12 +140,7 @@ def metric_space_curvature(space: Any, *, radius: float | None = None) -> Metric
     True
     """
     D = as_metric_space(space).distances
-    reach = None
-    if radius is not None:
-        value = as_floats(radius, "radius")
-        if value.ndim or not 0.0 < value < np.inf:
-            raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
-        reach = float(value)
+    reach = None if radius is None else as_radius(radius)
     extent = float(D[np.isfinite(D)].max())
     if extent and not 1.0 / LARGEST_DIAMETER < extent < LARGEST_DIAMETER:
         raise InvalidInputError(f"distances reach {extent:.3g}, and their curvature is no number; scale them.")
@@ -221,6 +216,7 @@ class _Ball:
 
     @classmethod
     def of(cls, D: Floats, order: Indices, near: Floats, sizes: Indices, starts: Floats) -> _Ball:
+        """The fits over the `sizes` nearest points, which `order` lists and `near` has the distances of."""
         n = len(D)
         by_order, by_point = np.full((3, n, N_ORDERS), np.nan), np.full((3, n), np.nan)
         for i, size in enumerate(sizes):
@@ -236,16 +232,21 @@ class _Ball:
         return cls(*by_order, *by_point)
 
     def squared_biases(self, smaller: _Ball | None, order: Indices) -> Floats:
-        """(n, 3): mean over the nearest points of the squares of the differences, less their variances."""
+        """(n, 3): mean over the nearest points of the squares of the differences, less their variances.
+
+        Differences are those from the highest order; of that itself from the smaller ball, or from the order below.
+        """
         rows = np.arange(len(self.values))
         top = np.maximum(np.isfinite(self.values).sum(axis=1) - 1, 0)
         squares = (self.values - self.values[rows, top][:, None]) ** 2
         noise = self.differences.copy()
-        before = 0 * top if smaller is None else np.maximum(np.isfinite(smaller.values).sum(axis=1) - 1, 0)
-        reference = self if smaller is None else smaller
-        before = np.maximum(top - 1, 0) if smaller is None else before
+        if smaller is None:
+            reference, before, ratio = self, np.maximum(top - 1, 0), np.zeros(len(top))
+        else:
+            reference, before = smaller, np.maximum(np.isfinite(smaller.values).sum(axis=1) - 1, 0)
+            with np.errstate(all="ignore"):
+                ratio = (smaller.radii / self.radii) ** NEXT_ORDER
         with np.errstate(all="ignore"):
-            ratio = 0.0 if smaller is None else (smaller.radii / self.radii) ** NEXT_ORDER
             factor = 1.0 / np.maximum(1.0 - ratio, FLOOR) ** 2
             squares[rows, top] = factor * (self.values[rows, top] - reference.values[rows, before]) ** 2
             noise[rows, top] = factor * reference.variances[rows, before]

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from rinow import tolerances
 from rinow._printing import counted
-from rinow.curvature.split_edges import position_rounding
+from rinow.curvature.rounding import coordinate_rounding
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = [
@@ -131,7 +131,7 @@ def mesh_notes(mesh: TriangleMesh | IntrinsicMesh, *, oriented: bool) -> tuple[s
 def _rounding_notes(mesh: TriangleMesh) -> list[str]:
     """Coordinates that are so large that their rounding is noise."""
     lengths = mesh.edge_lengths[mesh.topology.face_used]
-    share = position_rounding(mesh) / float(np.mean(lengths)) if lengths.any() else 0.0
+    share = coordinate_rounding(mesh) / float(np.mean(lengths)) if lengths.any() else 0.0
     if not ROUNDED < share < np.inf:
         return []
     return [
@@ -147,6 +147,7 @@ def _seam_size(mesh: TriangleMesh) -> int:
 
 
 def _orientation_notes(mesh: TriangleMesh) -> list[str]:
+    """What was turned so that normals agree and point outwards, or why they cannot agree."""
     t = mesh.topology
     notes: list[str] = []
     n_turned = int(np.count_nonzero(t.face_flips))

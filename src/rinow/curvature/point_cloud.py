@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rinow._arrays import as_floats, as_points
+from rinow._arrays import as_points, as_radius
 from rinow._printing import counted
 from rinow.curvature.cloud_fit import cloud_estimate
 from rinow.curvature.cloud_layers import cleaned
@@ -105,13 +105,10 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
     (np.float64(0.25), np.float64(0.5))
     """
     P = as_points(points, "points", 3)
-    if radius is not None:
-        value = as_floats(radius, "radius")
-        if value.ndim or not 0.0 < value < np.inf:
-            raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
+    reach = None if radius is None else as_radius(radius)
     finite = np.isfinite(P).all(axis=1)
     distinct, extent, place = _distinct(P[finite])
-    estimate, status, n_strays = _of_distinct(distinct, None if radius is None else float(radius) / extent)
+    estimate, status, n_strays = _of_distinct(distinct, None if reach is None else reach / extent)
     rows = np.full(len(P), len(distinct), np.intp)  # the last row is for the other points
     rows[finite] = place
     result = relabelled(rescaled(assembled(estimate, status, "point_cloud"), 1.0 / extent), rows)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rinow.curvature.caps import ON_EDGE, AmidEdge
 from rinow.mesh import TriangleMesh
 
-__all__ = ["redundant_vertices"]
+__all__ = ["CREASED", "has_continuation", "redundant_vertices"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -73,6 +73,7 @@ def _normals(mesh: TriangleMesh, faces: Indices) -> Floats:
 
 
 def _in_triangles(mesh: TriangleMesh, vertices: Indices, around: Indices) -> list[AmidEdge]:
+    """Those that lie in the triangle of their three neighbours."""
     V = mesh.vertices
     p, q, r = np.moveaxis(V[around] - V[vertices][:, None], 1, 0)
     normals = np.cross(q - p, r - p)
@@ -91,6 +92,7 @@ def _in_triangles(mesh: TriangleMesh, vertices: Indices, around: Indices) -> lis
 
 
 def _on_edges(mesh: TriangleMesh, vertices: Indices, around: Indices) -> list[AmidEdge]:
+    """Those that lie between two of their four neighbours, on a line that ends there."""
     V, found = mesh.vertices, list[AmidEdge]()
     spokes = np.linalg.norm(V[around] - V[vertices][:, None], axis=2)
     for i, j in ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)):
@@ -105,13 +107,19 @@ def _on_edges(mesh: TriangleMesh, vertices: Indices, around: Indices) -> list[Am
 
 def _goes_on(mesh: TriangleMesh, vertex: int, a: int, b: int) -> bool:
     """The line from the vertex to both ends of its edge goes on beyond them, along edges, or ends at the boundary."""
-    ends = mesh.topology.vertex_is_boundary
-    return all(bool(ends[end]) or _has_opposite(mesh, end, vertex) for end in (a, b))
+    ends = np.array([a, b])
+    goes_on = mesh.topology.vertex_is_boundary[ends] | has_continuation(mesh, ends, np.full(2, vertex))
+    return bool(goes_on.all())
 
 
-def _has_opposite(mesh: TriangleMesh, vertex: int, other: int) -> bool:
-    t, V = mesh.topology, mesh.vertices
-    spokes = V[t.neighbours[t.neighbour_offsets[vertex] : t.neighbour_offsets[vertex + 1]]] - V[vertex]
-    back = V[vertex] - V[other]
+def has_continuation(mesh: TriangleMesh, ends: Indices, others: Indices) -> NDArray[np.bool_]:
+    """(k,): some edge at a vertex of `ends` goes on where the one from the neighbour in `others` arrives."""
+    V, t = mesh.vertices, mesh.topology
+    counts = t.neighbour_offsets[ends + 1] - t.neighbour_offsets[ends]
+    start = np.repeat(t.neighbour_offsets[ends] - np.cumsum(counts) + counts, counts)
+    dart = np.repeat(np.arange(len(ends)), counts)
+    spokes = V[t.neighbours[start + np.arange(counts.sum())]] - V[ends[dart]]
+    back = V[others[dart]] - V[ends[dart]]
     across = np.linalg.norm(np.cross(spokes, back), axis=1)
-    return bool(np.any(across <= OPPOSITE * (spokes @ back)))
+    opposite = across <= -OPPOSITE * np.sum(spokes * back, axis=1)
+    return np.bincount(dart[opposite], minlength=len(ends)) > 0

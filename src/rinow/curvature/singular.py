@@ -107,16 +107,16 @@ def singular_features(mesh: Any) -> SingularFeatures:
     Notes
     -----
     *Creases.*  A straight section runs from each edge to both sides, up to the next crease, or, while creases are not
-    known, up to a turn of 20° after three faces that hardly turn.  On each side the normal
-    is taken as a linear function of the distance; the jump J between the two values at the edge is the angle of the
-    crease.  The turning over the distance r to both sides is Θ(r) = J + c r, the curvature of the section Θ/(2 r),
-    and its exponent d log κ / d log r = -J/Θ; below -½ the edge is a candidate.  It starts a line when J exceeds 20°
+    known, up to a turn of 20° after three faces that hardly turn.  On each side the normal is taken as a linear
+    function of the distance; the jump J between the two values at the edge is the angle of the crease.  The turning
+    over the distance r to both sides is Θ(r) = J + c r, the curvature of the section Θ/(2 r), and its exponent
+    d log κ / d log r = -J/Θ; below -½ the edge is a candidate.  It starts a line when J exceeds 20°
     and 4.5 standard errors, and continues one above 12° and 2.5; the errors come from the sections' deviation from
     their lines, their lengths, and the noise of the vertices' heights, which edges that turn to and fro tell.
-    Where both sides are flat to half a degree, 8° are enough.  Where a facet of eight faces or more that is flat to
-    rounding ends at 60° or more, and not with a step, there is a crease whatever the noise around.  Lines of fewer
-    than four edges, and open ends of fewer than six that do not end at a boundary or another crease, are dropped;
-    edges of 40° and nine standard errors count for two there.
+    Between flat sides, where J has an error below 1° and is the turning at the edge itself to a twentieth, 8° are
+    enough.  Where a facet of eight faces or more that is flat to rounding ends at 60° or more, and not with a step,
+    there is a crease whatever the noise around.  Lines of fewer than four edges, and open ends of fewer than six that
+    do not end at a boundary or another crease, are dropped; edges of 40° and nine standard errors count for two there.
 
     *Cone points.*  The defect of a disc of two rings, less the mean curvature density of the next two rings times
     its area, must exceed 0.08 rad and 12 standard deviations of the defects around, and most of it must lie at the

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.creases import EdgeTurnings
+from rinow.curvature.redundant import CREASED, has_continuation
+from rinow.curvature.rounding import coordinate_rounding
 from rinow.mesh import TriangleMesh
 
-__all__ = ["LONGEST", "SplitEdges", "position_rounding"]
+__all__ = ["LONGEST", "SplitEdges"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -26,21 +28,10 @@ ROUNDINGS = 4.0
 """Errors of positions, in units of their rounding, that are looked for: those of all ends of three edges."""
 DOUBTFUL = 8.0
 """Turnings, in units of those of rounding, that may be rounding where all the others around say so."""
-CREASED = 0.5
-"""Turning from which on an edge lies on a crease: see `rinow.curvature.redundant`."""
 STRAIGHT = 1e-6
 """Angle in radians between two halves of an edge, but for rounding."""
-OPPOSITE = 1e-4
-"""Angle in radians by which an edge may miss the continuation of another one."""
 LONGEST = 7
 """Vertices on an edge that was halved three times; longer rows are lines of a cone or of another ruled surface."""
-
-
-def position_rounding(mesh: TriangleMesh) -> float:
-    """Rounding of the coordinates: that of 24 bits if all of them are numbers of 24 bits, as most files keep them."""
-    V = mesh.vertices[mesh.vertex_is_finite]
-    largest = float(np.abs(V).max(initial=0.0))
-    return largest * (2.0**-24 if 0.0 < largest < 1e38 and np.array_equal(V, V.astype(np.float32)) else 2.0**-53)
 
 
 class SplitEdges:
@@ -59,14 +50,14 @@ class SplitEdges:
         self.on_edges, self.inside, self.corners = np.zeros((3, n), np.bool_)
         is_inner = t.vertex_is_manifold & ~t.vertex_is_boundary
         with np.errstate(divide="ignore", invalid="ignore"):
-            least = np.minimum(FLAT, DEFECT * position_rounding(mesh) / np.sqrt(mesh.vertex_areas))
+            least = np.minimum(FLAT, DEFECT * coordinate_rounding(mesh) / np.sqrt(mesh.vertex_areas))
         flat = is_inner & (np.abs(mesh.vertex_angle_defects) <= least)
         if self._rounding > 2.0**-50 * mesh.diagonal or flat.any():
             self._find(is_inner)
 
     @cached_property
     def _rounding(self) -> float:
-        return ROUNDINGS * position_rounding(self.mesh)
+        return ROUNDINGS * coordinate_rounding(self.mesh)
 
     @cached_property
     def bends(self) -> Bools:
@@ -96,6 +87,7 @@ class SplitEdges:
         return np.where(self.shares <= 0.5, self.ends[:, 0], self.ends[:, 1])
 
     def _find(self, is_inner: Bools) -> None:
+        """Look for vertices that the mesh bends at along two edges in one line, and follow these lines."""
         mesh, t = self.mesh, self.mesh.topology
         bent = t.halfedge_ends(t.edge_halfedges[self.bends])
         counts = np.bincount(bent.ravel(), minlength=mesh.n_vertices)
@@ -134,7 +126,7 @@ class SplitEdges:
             steps[on] += 1
         ends = end.reshape(-1, 2)
         is_whole = (row[ends] < 0).all(axis=1) & (steps.reshape(-1, 2).sum(axis=1) <= LONGEST + 1)
-        is_longer = self._goes_on(end, last).reshape(-1, 2)
+        is_longer = has_continuation(mesh, end, last).reshape(-1, 2)
         goes_on = is_longer | ~is_inner[ends]
         is_edge = is_whole & ~goes_on.all(axis=1) & self._is_corner[ends].all(axis=1)
         known = self._ends_whole_edges(row < 0)
@@ -179,15 +171,3 @@ class SplitEdges:
         corner[mesh.faces[creased // 3]] = False
         corner[mesh.faces[t.partners[creased] // 3]] = False
         return corner
-
-    def _goes_on(self, end: Indices, last: Indices) -> Bools:
-        """(k,): some edge at the end goes on where the one from `last` arrives."""
-        V, t = self.mesh.vertices, self.mesh.topology
-        counts = t.neighbour_offsets[end + 1] - t.neighbour_offsets[end]
-        start = np.repeat(t.neighbour_offsets[end] - np.cumsum(counts) + counts, counts)
-        dart = np.repeat(np.arange(len(end)), counts)
-        spokes = V[t.neighbours[start + np.arange(counts.sum())]] - V[end[dart]]
-        back = V[last[dart]] - V[end[dart]]
-        across = np.linalg.norm(np.cross(spokes, back), axis=1)
-        opposite = across <= -OPPOSITE * np.sum(spokes * back, axis=1)
-        return np.bincount(dart[opposite], minlength=len(end)) > 0

@@ -9,10 +9,10 @@ from rinow.kernels import balls, monge, stencils
 from rinow.mesh import TriangleMesh
 from rinow.topology import Topology
 
-__all__ = ["N_BLOCKS", "empty_frames", "local_spacing", "ring_means", "rings_around", "stencil_surface"]
+__all__ = ["NEEDLES", "N_BLOCKS", "empty_frames", "local_spacing", "ring_means", "rings_around", "stencil_surface"]
 
 N_BLOCKS = 16
-"""Pieces a kernel cuts its vertices into; each has scratch of its own."""
+"""Pieces a kernel cuts its work into; each has scratch of its own."""
 NEEDLES = 3.0
 """Largest ratio of the mean edge to that of equilateral triangles of the same area that counts."""
 

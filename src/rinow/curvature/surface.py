@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow._arrays import as_floats
+from rinow._arrays import as_radius
 from rinow._executor import Executor
 from rinow._printing import OneLine
 from rinow.curvature.angle_defect import angle_defect
@@ -133,8 +133,8 @@ def surface_curvature(
         order and scale at each place from the data.
     quality : {"best", "fast"}, optional
         "fast" lets a sample of the vertices decide about order and scale around it, with fewer patches; it is about
-        twice as fast and less accurate.  For "sectional" and "auto"; a note tells that it
-        changes nothing with others.
+        twice as fast and less accurate.  With methods other than "sectional" and "auto" it changes nothing, as a note
+        says.
     radius : float, optional
         Radius of all balls of "sectional" and "auto", of the averages of "intrinsic", or of the stars of "wald" and
         "robinson", positive, in the unit of length.  By default the data decide; "wald" takes the triangles around
@@ -165,8 +165,8 @@ def surface_curvature(
     Notes
     -----
     All values are unchanged by rotations, shifts and renumbering, up to rounding, and scale as powers of length.
-    Only where several vertices are equally near the radius of "robinson", or of "wald" with one, as on structured
-    meshes, their order decides where the lines of these two begin.
+    Only where a vertex is reached by several geodesics of one length, as on symmetric meshes, the order of the faces
+    decides which of them "robinson", and "wald" with a radius, take.
     "auto" and "sectional" take no data from beyond a crease.  A vertex on a crease has one curvature on each side: that
     of the side that bends most is given, so that the rim of a hole in a plate has the curvature of its wall.  Flat
     facets have 0, also at corners, whose curvature as points is infinite; `singular_features` has their angles.
@@ -217,14 +217,12 @@ def _chosen_method(method: str, quality: str, mesh: TriangleMesh | IntrinsicMesh
 
 
 def _checked_radius(radius: float, method: str) -> float:
-    value = as_floats(radius, "radius")
-    if value.ndim or not 0.0 < value < np.inf:
-        raise InvalidInputError(f"radius = {radius!r} is not a positive length; leave it out for the default.")
+    length = as_radius(radius)
     if method not in WITH_RADIUS:
         raise InvalidInputError(
             f"radius = {radius!r} is not for method {method!r}, which takes the star of each vertex; leave it out."
         )
-    return float(value)
+    return length
 
 
 def _estimate(

@@ -14,7 +14,7 @@ from scipy.sparse import csr_matrix
 from rinow._arrays import as_indices
 from rinow.errors import InvalidInputError, InvalidMeshError
 from rinow.geodesics.edge_graph import edge_distances
-from rinow.geodesics.exact import ExactGeodesics
+from rinow.geodesics.exact import SOURCES_AT_ONCE, ExactGeodesics
 from rinow.geodesics.heat import heat_distances
 from rinow.geodesics.queries import as_radii, as_sources, mark_undefined, rows_within
 from rinow.mesh import as_mesh
@@ -23,8 +23,6 @@ from rinow.metric_space import MetricSpace, trusted_metric_space
 __all__ = ["geodesic_distances", "geodesic_space"]
 
 Floats = NDArray[np.float64]
-
-_SOURCES_AT_ONCE = 64
 
 
 def geodesic_distances(
@@ -158,8 +156,8 @@ def geodesic_space(
     if chosen.ndim != 1 or not len(chosen):
         raise InvalidInputError(f"indices has shape {chosen.shape}; give one list of at least one vertex.")
     D = np.empty((len(chosen), len(chosen)))
-    for first in range(0, len(chosen), _SOURCES_AT_ONCE):
-        block = slice(first, first + _SOURCES_AT_ONCE)
+    for first in range(0, len(chosen), SOURCES_AT_ONCE):
+        block = slice(first, first + SOURCES_AT_ONCE)
         D[block] = np.asarray(geodesics.distances(chosen[block]))[:, chosen]
         if progress is not None:
             progress(min(block.stop, len(chosen)), len(chosen))

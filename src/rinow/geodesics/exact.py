@@ -16,11 +16,14 @@ from rinow.geodesics.unfolding import UnfoldedMesh, unfold
 from rinow.kernels.fans import SINGULAR
 from rinow.mesh import as_mesh
 
-__all__ = ["ExactGeodesics", "GeodesicBalls"]
+__all__ = ["SOURCES_AT_ONCE", "ExactGeodesics", "GeodesicBalls"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Balls = tuple[Indices, NDArray[np.int32], Floats, Floats]
+
+SOURCES_AT_ONCE = 64
+"""Sources asked for together where not all rows are kept: enough for all threads, few enough for the memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +41,8 @@ class GeodesicBalls:
     directions : (n_entries,) ndarray of float
         Direction in which the shortest path leaves the source, in radians: the angle along the surface from a fixed
         edge, counter-clockwise in the orientation of most faces of the component.  At an interior vertex it lies in
-        [0, total angle), at a boundary vertex it counts from the boundary edge.  It is nan for the source itself and
+        [0, total angle], at a boundary vertex it counts from the boundary edge.  Of several shortest paths it is that
+        of the one whose last half-edge has the least index.  It is nan for the source itself and
         where the faces around the source form no single fan.
     total_angles : (n_sources,) ndarray of float
         Angles of the faces around each source; nan where they form no single fan.

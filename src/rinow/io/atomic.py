@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import secrets
-from collections.abc import Generator
+from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from pathlib import Path
 
 from rinow.errors import FileFormatError
 
-__all__ = ["check_target", "replacing"]
+__all__ = ["check_target", "check_targets", "replacing"]
 
 
 @contextmanager
@@ -51,6 +51,25 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
         raise FileFormatError(f"{path} cannot be written: {error.strerror or error}.") from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def check_targets(paths: Iterable[str | os.PathLike[str]], inputs: Iterable[str | os.PathLike[str]]) -> None:
+    """Refuse files of which one is an input, is named twice, or cannot be made or replaced.
+
+    Raises
+    ------
+    FileFormatError
+        If that is so, for the first such file.
+    """
+    sources, seen = {os.path.realpath(path) for path in inputs}, set[str]()
+    for path in paths:
+        place = os.path.realpath(path)
+        if place in sources:
+            raise FileFormatError(f"{path} is the input; choose another name for the output.")
+        if place in seen:
+            raise FileFormatError(f"{path} is named twice as an output; choose another name.")
+        seen.add(place)
+        check_target(path)
 
 
 def check_target(path: str | os.PathLike[str]) -> None:

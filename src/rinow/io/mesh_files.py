@@ -12,7 +12,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from rinow.errors import FileFormatError, InvalidInputError
-from rinow.io.atomic import check_target
+from rinow.io.atomic import check_targets
 from rinow.io.faults import reading, writing
 from rinow.io.fields import VTK_NAMES, checked_fields, renamed
 from rinow.io.freesurfer import is_freesurfer, read_freesurfer, write_freesurfer
@@ -221,23 +221,17 @@ def check_outputs(
         If an output is an input, occurs twice, has a wrong suffix (pictures: .png, pages: .html), or cannot be
         made where it is.
     """
-    sources = {os.path.realpath(path) for path in inputs}
     suffixes = {os.path.realpath(path): (".png", "pictures") for path in pictures}
     suffixes |= {os.path.realpath(path): (".html", "reports") for path in pages}
-    seen: set[str] = set()
-    for output in outputs:
+    targets = list(outputs)
+    check_targets(targets, inputs)
+    for output in targets:
         place = os.path.realpath(output)
-        if place in sources:
-            raise FileFormatError(f"{output} is the input; choose another name for the output.")
-        if place in seen:
-            raise FileFormatError(f"{output} is named twice as an output; choose another name.")
-        seen.add(place)
         suffix, kind = suffixes.get(place, ("", "meshes"))
         if kind == "meshes":
             _format_of(Path(output))
         elif not place.lower().endswith(suffix):
             raise FileFormatError(f"{output} has not the suffix {suffix}, the one of {kind}; choose another name.")
-        check_target(output)
 
 
 def demo_mesh() -> TriangleMesh:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import zipfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.errors import FileFormatError
-from rinow.io.atomic import check_target
+from rinow.io.atomic import check_targets
 from rinow.io.faults import reading, writing
 from rinow.io.fields import renamed
 from rinow.io.ply import has_faces, write_ply_points
@@ -89,17 +88,11 @@ def check_point_outputs(outputs: Iterable[Path], *, inputs: Iterable[Path] = ())
     FileFormatError
         If an output has another suffix than .ply, .csv and .npz, is an input, occurs twice, or cannot be made.
     """
-    sources, seen = {os.path.realpath(path) for path in inputs}, set[str]()
-    for path in outputs:
-        place = os.path.realpath(path)
+    targets = list(outputs)
+    for path in targets:
         if path.suffix.lower() not in WRITTEN:
             raise FileFormatError(f"{path} cannot hold points without faces; choose one of {' '.join(WRITTEN)}.")
-        if place in sources:
-            raise FileFormatError(f"{path} is the input; choose another name for the output.")
-        if place in seen:
-            raise FileFormatError(f"{path} is named twice as an output; choose another name.")
-        seen.add(place)
-        check_target(path)
+    check_targets(targets, inputs)
 
 
 def write_points(

@@ -13,7 +13,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from rinow.errors import FileFormatError
-from rinow.io.atomic import check_target, replacing
+from rinow.io.atomic import check_targets, replacing
 from rinow.io.faults import reading, writing
 from rinow.io.mesh_files import read_mesh
 from rinow.io.npz import read_arrays
@@ -158,17 +158,11 @@ def check_tables(paths: Iterable[Path], *, inputs: Iterable[Path] = ()) -> None:
     FileFormatError
         If a suffix is neither .csv nor .npz, or a file is an input, occurs twice, or cannot be made where it is.
     """
-    sources, seen = {os.path.realpath(source) for source in inputs}, set[str]()
-    for path in paths:
-        place = os.path.realpath(path)
+    targets = list(paths)
+    for path in targets:
         if path.suffix.lower() not in (".csv", ".npz"):
             raise FileFormatError(f"{path} has neither suffix .csv nor .npz; choose another name for the table.")
-        if place in sources:
-            raise FileFormatError(f"{path} is the input; choose another name for the output.")
-        if place in seen:
-            raise FileFormatError(f"{path} is named twice as an output; choose another name.")
-        seen.add(place)
-        check_target(path)
+    check_targets(targets, inputs)
 
 
 def write_columns(path: Path, columns: Mapping[str, NDArray[np.generic]], meaning: str) -> None:

@@ -9,7 +9,7 @@ from numba.extending import intrinsic
 
 from rinow.kernels._jit import kernel
 
-ONE, ZERO, SIX, LOW = np.uint64(1), np.uint64(0), np.uint64(6), np.uint64(63)
+ONE, ZERO, LOW = np.uint64(1), np.uint64(0), np.uint64(63)
 
 if config.DISABLE_JIT:
 

@@ -40,7 +40,7 @@ def total(values, members, begin, end):
 
 
 @kernel
-def concentrated(v, defects, areas, members, ends):
+def concentrated(defects, areas, members, ends):
     """Defect of the disc of two rings that the curvature of the rings beyond does not explain, and its noise.
 
     With a cone point of defect J in a surface of curvature κ the disc of area A has the defect D = J + κ A, so that
@@ -75,5 +75,5 @@ def cone_defects(candidates, offsets, neighbours, closed, defects, areas, n_bloc
         for i in range(candidates.shape[0] * block // n_blocks, candidates.shape[0] * (block + 1) // n_blocks):
             v = candidates[i]
             grow_disc(v, offsets, neighbours, closed, members, ends, marks, i)
-            excess[i], noise[i] = concentrated(v, defects, areas, members, ends)
+            excess[i], noise[i] = concentrated(defects, areas, members, ends)
             rival[i] = largest_neighbour(members, ends, defects)

@@ -11,7 +11,7 @@ from rinow.kernels._jit import kernel
 from rinow.kernels.fans import PLAIN, SINGULAR
 from rinow.kernels.unfolding import cross, dot
 from rinow.kernels.windows import WINDOW
-from rinow.tolerances import DETOUR
+from rinow.tolerances import DETOUR, EQUAL_PATHS
 
 REACHED = np.dtype(
     [
@@ -88,7 +88,12 @@ def waiting_of_row(waiting, i):
 
 @kernel
 def reach(ball, vertex, bend, distance, place, arrival, origin, radius):
-    """Record a path to a vertex within the radius; return whether a clearly shorter one was known."""
+    """Record a path to a vertex within the radius; return whether a clearly shorter one was known.
+
+    Of paths of one length, as symmetric surfaces have them, the one with the least half-edge of arrival is kept: else
+    rounding would choose the direction.  One whose last step has no length is not taken then, for two vertices at one
+    place could become the origins of each other.
+    """
     if distance > radius:
         return False
     slot = np.intp(ball.slots[vertex])
@@ -98,9 +103,15 @@ def reach(ball, vertex, bend, distance, place, arrival, origin, radius):
         ball.slots[vertex] = slot
         ball.reached[slot]["vertex"], ball.reached[slot]["distance"] = vertex, np.inf
     record = ball.reached[slot]
-    if distance < record["distance"]:
-        record["distance"], record["arrival"], record["origin"] = distance, arrival, origin
+    known = record["distance"]
+    if distance <= known * (1.0 + EQUAL_PATHS) and (
+        distance < known * (1.0 - EQUAL_PATHS)
+        or (arrival < record["arrival"] and abs(place[0]) > 4.0 * EQUAL_PATHS * known)
+    ):
+        record["arrival"], record["origin"] = arrival, origin
         record["position"], record["side"] = place
+    if distance < known:
+        record["distance"] = distance
         if bend["kind"] != PLAIN and distance + bend["clearance"] <= radius:
             if ball.counts[N_PENDING] < ball.pending.shape[0]:
                 heaps.push(ball.pending, ball.counts[N_PENDING], distance, slot)

@@ -20,8 +20,10 @@ BEND, BEND_WEIGHT = 0.6, 44.0
 of the relative error of the radius: an angle of 0.15 costs as much as the whole radius."""
 ASIDE_WEIGHT = 3.0
 """What the squared angle to the middle of the sector costs for a first end."""
+MISSING = 100.0
+"""What an end costs that is not there: more than any other."""
 TIE = 1e-12
-"""Costs this near each other are equal."""
+"""Costs, angles and shares of the radius this near each other are equal: rounding of geodesic distances."""
 FEWEST, WIDEST = 5, 0.45
 """A star needs so many points, and no gap of so much of the full turn."""
 
@@ -45,53 +47,79 @@ def nearest_boundary(ball, begin, end, is_boundary):
 
 @kernel
 def best_end(ball, begin, end, radius, towards, full, widest, weight):
-    """The entry of the ball near a distance and a direction that costs least; -1 without one.
+    """The entry of the ball near a distance and a direction that costs least, its cost and its angle to the left.
 
-    Of two that cost the same, as mirror images do, it is the one to the left.
+    Of several that cost the same, as mirror images do, it is the one farthest to the left, and of these the nearest.
+    Without one they are -1, `MISSING` and 0.
     """
     _, distances, directions = ball
-    best, least, leftmost = -1, np.inf, -np.inf
+    best, least, left = -1, MISSING, 0.0
     for j in range(begin, end):
-        off = turned(directions[j] - towards, full)
-        if NEAREST * radius <= distances[j] <= FARTHEST * radius and abs(off) <= widest:
-            cost = (distances[j] / radius - 1.0) ** 2 + weight * off * off
-            if cost < least - TIE or (cost <= least + TIE and off > leftmost):
-                best, least, leftmost = j, min(cost, least), off
-    return best
+        off, size = turned(directions[j] - towards, full), distances[j] / radius
+        if NEAREST - TIE <= size <= FARTHEST + TIE and abs(off) <= widest + TIE:
+            cost = (size - 1.0) ** 2 + weight * off * off
+            is_lefter = off > left + TIE or (off >= left - TIE and distances[j] < distances[best])
+            if cost < least - TIE or (cost <= least + TIE and is_lefter):
+                best, least, left = j, cost, off
+    return best, least, left
 
 
 @kernel
-def first_direction(ball, begin, end, radius):
-    """Direction of the entry nearest to the radius: it knows no numbering of the vertices."""
+def write_lines(ball, begin, end, radius, first, full, entries, bends):
+    """Write the ends of four lines, the first one towards `first`, and their bends; their cost, how far they are left.
+
+    Each end that is not there costs `MISSING`.
+    """
+    total, leftness = 0.0, 0.0
+    for k in range(LINES):
+        towards = first + 0.5 * full * k / LINES
+        a, cost, left = best_end(ball, begin, end, radius, towards, full, SECTOR * full, ASIDE_WEIGHT)
+        entries[k], entries[k + LINES], bends[k] = a, -1, np.nan
+        total, leftness = total + cost, leftness + left
+        if a >= 0:
+            straight = ball[2][a] + 0.5 * full
+            b, cost, left = best_end(ball, begin, end, radius, straight, full, BEND, BEND_WEIGHT)
+            entries[k + LINES] = b
+            bends[k] = turned(ball[2][b] - straight, full) if b >= 0 else np.nan
+            total, leftness = total + cost, leftness + left
+        else:
+            total += MISSING
+    return total, leftness
+
+
+@kernel
+def choose_lines(ball, begin, end, radius, full, entries, bends):
+    """Write the ends of four lines, the first one towards the entry nearest to the radius.
+
+    Of several that are as near, as on a lattice, it is the one whose lines cost least, and of these the one whose ends
+    are farthest to the left: the choice knows neither a numbering of the vertices nor how their distances are rounded.
+    """
     _, distances, directions = ball
-    best, least = 0.0, np.inf
+    nearest = np.inf
     for j in range(begin, end):
-        off = abs(distances[j] / radius - 1.0)
-        if off < least:
-            best, least = directions[j], off
-    return best
+        nearest = min(nearest, abs(distances[j] / radius - 1.0))
+    best, last, least, most = -1, -1, np.inf, -np.inf
+    for j in range(begin, end):
+        if abs(distances[j] / radius - 1.0) <= nearest + TIE:
+            cost, leftness = write_lines(ball, begin, end, radius, directions[j], full, entries, bends)
+            last = j
+            if cost < least - TIE or (cost <= least + TIE and leftness > most + TIE):
+                best, least, most = j, cost, leftness
+    if best != last:
+        write_lines(ball, begin, end, radius, directions[best], full, entries, bends)
 
 
 @parallel_kernel
 def choose_ends(ball, offsets, totals, is_boundary, share, radii, entries, bends):
     """Write the ends of four lines through each centre as entries of its ball, -1 for none, and the bends of the lines.
 
-    The first line leaves towards the entry nearest to the radius.  A bend is the angle by which the second end is
-    beyond the straight continuation.  The radii are cut short at the boundary, and to `share` of that.
+    A bend is the angle by which the second end is beyond the straight continuation.  The radii are cut short at the
+    boundary, and to `share` of that.
     """
     for i in prange(radii.shape[0]):
-        begin, end, full = offsets[i], offsets[i + 1], totals[i]
+        begin, end = offsets[i], offsets[i + 1]
         radii[i] = share * min(radii[i], nearest_boundary(ball, begin, end, is_boundary))
-        first = first_direction(ball, begin, end, radii[i])
-        for k in range(LINES):
-            towards = first + 0.5 * full * k / LINES
-            a = best_end(ball, begin, end, radii[i], towards, full, SECTOR * full, ASIDE_WEIGHT)
-            entries[i, k], entries[i, k + LINES] = a, -1
-            if a >= 0:
-                straight = ball[2][a] + 0.5 * full
-                b = best_end(ball, begin, end, radii[i], straight, full, BEND, BEND_WEIGHT)
-                entries[i, k + LINES] = b
-                bends[i, k] = turned(ball[2][b] - straight, full) if b >= 0 else np.nan
+        choose_lines(ball, begin, end, radii[i], totals[i], entries[i], bends[i])
 
 
 @parallel_kernel

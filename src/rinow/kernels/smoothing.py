@@ -83,7 +83,7 @@ def is_inside(m, radius, areas, members, points):
 
 
 @parallel_kernel
-def count_rows(radii, areas, is_fan, is_closed, metric, n_blocks, counts_out):
+def count_rows(is_fan, radii, areas, is_closed, metric, n_blocks, counts_out):
     """Write the number of data with a weight around each vertex."""
     n = radii.shape[0]
     for block in prange(n_blocks):
@@ -98,7 +98,7 @@ def count_rows(radii, areas, is_fan, is_closed, metric, n_blocks, counts_out):
 
 
 @parallel_kernel
-def row_places(radii, areas, is_fan, is_closed, metric, n_blocks, starts, columns, places, has_gap):
+def row_places(radii, areas, is_closed, metric, n_blocks, starts, columns, places, has_gap):
     """Write the data with a weight around each vertex, their places, and whether one without data is among them."""
     n = radii.shape[0]
     for block in prange(n_blocks):

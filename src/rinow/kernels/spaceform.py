@@ -164,12 +164,6 @@ def angle_and_derivative(a, b, c, k):
 
 
 @kernel
-def angle_derivative(a, b, c, k):
-    """Derivative in k of the angle opposite a."""
-    return angle_and_derivative(a, b, c, k)[1]
-
-
-@kernel
 def side(b, c, alpha, k):
     """Side opposite the angle alpha: s_k(a/2)² = (s_k((b-c)/2) cos(alpha/2))² + (s_k((b+c)/2) sin(alpha/2))²."""
     half_sum, half_difference = 0.5 * (b + c), 0.5 * (b - c)

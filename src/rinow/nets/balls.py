@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
-from rinow.geodesics.exact import ExactGeodesics
+from rinow.geodesics.exact import SOURCES_AT_ONCE, ExactGeodesics
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = ["BallOf", "covers", "mesh_balls", "space_balls", "surface_radius_of", "surface_vertices"]
@@ -21,8 +21,6 @@ Indices = NDArray[np.intp]
 
 BallOf = Callable[[int, float], tuple[Indices | slice, Floats]]
 """Function of a point and a radius: the points of the ball at least, or all, and their distances from its centre."""
-
-_SOURCES_AT_ONCE = 64
 
 
 def surface_vertices(mesh: TriangleMesh | IntrinsicMesh) -> Indices:
@@ -63,8 +61,8 @@ def _one_thread() -> Generator[None]:
 def covers(mesh: TriangleMesh | IntrinsicMesh, sources: Indices, radius: float) -> bool:
     """Whether the balls around some vertices cover all vertices of the surface."""
     geodesics, bare = ExactGeodesics(mesh), np.ones(mesh.n_vertices, np.bool_)
-    for first in range(0, len(sources), _SOURCES_AT_ONCE):
-        rows = csr_matrix(geodesics.distances(sources[first : first + _SOURCES_AT_ONCE], max_distance=radius))
+    for first in range(0, len(sources), SOURCES_AT_ONCE):
+        rows = csr_matrix(geodesics.distances(sources[first : first + SOURCES_AT_ONCE], max_distance=radius))
         bare[rows.indices] = False
     return not bare[surface_vertices(mesh)].any()
 

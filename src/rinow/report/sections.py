@@ -62,6 +62,7 @@ def number(value: float, digits: int = 6) -> str:
 
 
 def _totals(study: SurfaceStudy) -> str:
+    """Area, Euler characteristic and the terms of Gauss-Bonnet, and the faults of the mesh."""
     mesh, unit = study.mesh, study.unit
     counts, totals = mesh_counts(mesh), surface_totals(mesh, study.curvature.gaussian)
     share = totals.area_with_value / totals.area if totals.area > 0.0 else math.nan
@@ -113,6 +114,7 @@ def _features(study: FeatureStudy) -> str:
 
 
 def _origin(study: CurvatureStudy, version: str, made: str) -> str:
+    """What the values were computed by, and when; and what was found and done."""
     asked, radius = study.settings, study.settings.get("radius")
     used = study.curvature.method
     wish = asked.get("method", used)
@@ -130,6 +132,7 @@ def _origin(study: CurvatureStudy, version: str, made: str) -> str:
 
 
 def _reading(study: CurvatureStudy) -> str:
+    """How to read the numbers: sign, unit, spread, what is undefined, digits."""
     digits = (
         f"fields rounded to {BITS_OF_LARGE} binary digits (1 in {2**BITS_OF_LARGE:,}; the files of rinow hold all)"
         if len(study.curvature.status) >= LARGE

@@ -62,6 +62,7 @@ class ComparisonStudy:
         return {**head, **self._certificates(), "seconds": self.seconds}
 
     def _certificates(self) -> dict[str, Any]:
+        """What proves the bounds: witnesses and percentiles of surfaces, pairs of points of spaces."""
         r = self.result
         if isinstance(r, HausdorffDistance):
             return {

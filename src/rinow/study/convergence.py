@@ -16,7 +16,7 @@ from rinow.comparison.lipschitz import lipschitz_distance
 from rinow.comparison.surface_points import insert_points
 from rinow.errors import InvalidInputError, InvalidMeshError
 from rinow.geodesics.distances import geodesic_space
-from rinow.geodesics.exact import ExactGeodesics
+from rinow.geodesics.exact import SOURCES_AT_ONCE, ExactGeodesics
 from rinow.mesh import TriangleMesh, as_triangle_mesh, is_mesh_like
 from rinow.metric_space import MetricSpace, as_metric_space, trusted_metric_space
 from rinow.nets.balls import surface_radius_of
@@ -27,7 +27,6 @@ __all__ = ["ConvergenceStudy", "study_meshes", "study_nets"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-_SOURCES_AT_ONCE = 64
 
 COLUMNS = {
     "hausdorff": "Hausdorff distance of the surfaces",
@@ -140,11 +139,14 @@ def study_meshes(
     With R the pairs of `max_points` vertices of a mesh and their nearest points of the limit, and r, s the distances
     within which these reach every point of the surfaces,
 
-    .. math:: d_{GH} \le \tfrac12 \mathrm{dis} R + r + s,
+    .. math:: d_{GH} \le \tfrac12 \mathrm{dis} R + \max(r, s).
 
-    by the triangle inequality.  From below the difference of the diameters counts.  The nets illustrate Proposition
-    2.44 of the paper: meshes converge exactly if nets of one size do for every ε.  For finite nets this is the same
-    as convergence in the Lipschitz distance.
+    For let every point of a surface have the partner of the nearest chosen point of that surface.  By the triangle
+    inequality two points of the mesh and their partners differ in distance by at most dis R + 2r, two of the limit by
+    dis R + 2s, and one of each by dis R + r + s.  From below the difference of the diameters counts.
+
+    The nets illustrate Proposition 2.44 of the paper: meshes converge exactly if nets of one size do for every ε.  For
+    finite nets this is the same as convergence in the Lipschitz distance.
 
     Examples
     --------
@@ -244,7 +246,7 @@ def _between_surfaces(surface: TriangleMesh, target: TriangleMesh, max_points: i
     chosen = farthest_point_net(surface, size=size, start=_start(surface)).indices
     X, r = _net_in(surface, chosen)
     Y, s = _net_in(*insert_points(target, surface.vertices[chosen]))
-    upper = 0.5 * distortion(np.arange(size), X, Y) + r + s
+    upper = 0.5 * distortion(np.arange(size), X, Y) + max(r, s)
     gap = max(X.diameter - Y.diameter - 2.0 * s, Y.diameter - X.diameter - 2.0 * r)
     return max(0.5 * gap, 0.0), upper
 
@@ -253,8 +255,8 @@ def _net_in(mesh: TriangleMesh, indices: Indices) -> tuple[MetricSpace, float]:
     """Vertices of a mesh as a space, and the distance within which they reach every point of its surface."""
     geodesics, k = ExactGeodesics(mesh), len(indices)
     D, nearest = np.empty((k, k)), np.full(mesh.n_vertices, np.inf)
-    for first in range(0, k, _SOURCES_AT_ONCE):
-        block = slice(first, first + _SOURCES_AT_ONCE)
+    for first in range(0, k, SOURCES_AT_ONCE):
+        block = slice(first, first + SOURCES_AT_ONCE)
         rows = np.asarray(geodesics.distances(indices[block]))
         D[block] = rows[:, indices]
         nearest = np.minimum(nearest, rows.min(axis=0))
