@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.centres import cover, flat_frames, members_of_discs, turns
 from rinow.curvature.charts import MEAN_ORDER, WIDER, Choice, log_ratios, lower
+from rinow.curvature.lack_of_fit import squared_biases_by_residuals
 from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
@@ -200,12 +201,15 @@ def _examine(
     noise = np.fmin.reduce(medians, axis=1, initial=np.inf) / spacing**2
     noise[noise == np.inf] = 0.0
     noise = np.maximum(noise, ROUNDING**2)
+    ratios = np.fmin(medians.reshape(residuals.shape) / spacing[:, None, None] ** 2, residuals) / noise[:, None, None]
+    missed = squared_biases_by_residuals(ratios, noise, ladder.reaches, curvedness * spacing, errors_of == MEAN)
     s2 = np.repeat(noise, n_radii)[:, None]
     comparison = s2 * tables.bias_variance
     known = patch_fits.Tables(
         (s2 * tables.variance + s2 * s2 * tables.second).astype(np.float32),
         (tables.bias - comparison).astype(np.float32), comparison.astype(np.float32),
-        tables.leverage, tables.step - s2 * tables.step_variance, *(x[:0] for x in tables[5:]),
+        tables.leverage, np.fmax(tables.step - s2 * tables.step_variance, missed.reshape(len(s2), N_ORDERS)),
+        *(x[:0] for x in tables[5:]),
     )  # fmt: skip
     logs = np.full((m, n_radii, N_ORDERS), np.nan)
     power = 2 if errors_of == MEAN else 4

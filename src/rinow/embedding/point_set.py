@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rinow._arrays import as_distance_matrix, as_distances
 from rinow._printing import OneLine
-from rinow.embedding.misfit import Misfit, least_misfit, noise_at, quietest_curvature, quietest_near
+from rinow.embedding.misfit import least_misfit, noise_at, quietest_curvature, quietest_near
 from rinow.errors import InvalidInputError, NotAMetricError
 
 __all__ = ["LARGEST_DIAMETER", "CurvatureFit", "closest_curvatures", "fit_curvature"]
