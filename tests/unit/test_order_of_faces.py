@@ -22,7 +22,7 @@ def stretched_ellipsoid(seed):
 @pytest.mark.parametrize("quality", ["best", "fast"])
 @pytest.mark.parametrize("seed", [21, 22, 23])
 def test_thin_faces_in_any_order(seed, quality):
-    """Cores of patches hold vertices that are reached over farther ones only; order does not say which of them count."""
+    """Vertices of a core may be reached over farther ones only; order does not say which of them count."""
     V, F = stretched_ellipsoid(seed)
     c = surface_curvature((V, F), quality=quality)
     rng = np.random.default_rng(24)
