@@ -6,7 +6,7 @@ import pytest
 from rinow import surface_curvature
 from rinow.curvature.lack_of_fit import squared_biases_by_residuals
 
-REACHES = np.array([1.5, 2.0, 2.5, 3.0, 4.0])
+REACHES = np.array([1.2, 1.5, 1.8, 2.0, 2.5, 3.0, 4.0])
 
 
 def waves(n):
@@ -40,20 +40,20 @@ def test_waves_of_twenty_spacings_are_not_flat(noise, bound, quality):
 
 
 def test_noise_alone_tells_nothing():
-    """Ratios below four, fits that are missing, and residuals that hardly any two fits share."""
-    ratios = np.full((3, 5, 7), 1.5)
-    ratios[0, 4, 0] = 3.9
-    ratios[1] = 10.0 ** np.arange(35).reshape(5, 7)
-    ratios[2, 1] = np.nan
+    """Ratios below eight, fits that are missing, and residuals that hardly any two fits share."""
+    ratios = np.full((3, 7, 7), 1.5)
+    ratios[0, 6, 0] = 7.9
+    ratios[1] = 10.0 ** np.arange(49).reshape(7, 7)
+    ratios[2, 1:4] = np.nan
     assert np.isnan(squared_biases_by_residuals(ratios, np.full(3, 0.01), REACHES, np.ones(3), False)).all()
 
 
 def test_what_is_missed_bends_over_the_largest_ball_that_is_fitted():
-    """a = √(0.01 (104 - 4)) = 1 beyond a ball of radius 3: H is off by 16/9, K by 16/9 (16/9 + 2)."""
-    ratios = np.ones((1, 5, 7))
-    ratios[0, 4, 0] = 104.0
+    """a = √(0.01 (108 - 8)) = 1 beyond a ball of radius 3: H is off by 16/9, K by 16/9 (16/9 + 2)."""
+    ratios = np.ones((1, 7, 7))
+    ratios[0, 6, 0] = 108.0
     arguments = ratios, np.array([0.01]), REACHES, np.array([1.0])
     for of_mean, expected in ((True, 16 / 9), (False, 16 / 9 * (16 / 9 + 2))):
         found = squared_biases_by_residuals(*arguments, of_mean)
-        assert found[0, 4, 0] == pytest.approx(expected**2)
+        assert found[0, 6, 0] == pytest.approx(expected**2)
         assert np.isnan(found).sum() == found.size - 1

@@ -13,9 +13,9 @@ __all__ = ["squared_biases_by_residuals"]
 
 Floats = NDArray[np.float64]
 
-ALONE = 2.0
+ALONE = 4.0
 """Mean squares up to so many times the noise are noise; those of more than twice as much are counted."""
-ENOUGH = 24
+ENOUGH = 35
 """Fits, of all radii and orders, that leave noise alone if it is noise, and no error of the best of them."""
 BEND = 16.0
 """Second derivative of a polynomial at the centre of the unit disc, over its largest value, if a quadric sees nothing
