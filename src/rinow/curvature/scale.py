@@ -161,7 +161,7 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     member_starts, members = members_of_discs(sheet, everything, centres, NEAR * radius, room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
-    is_seen = ~np.isnan(torus.logs).all(axis=(1, 2))
+    is_seen = np.asarray(~np.isnan(torus.logs).all(axis=(1, 2)))
     for examined in (pilot, torus, plane):
         _log_guesses(examined)
     logs = pilot.logs, torus.logs, plane.logs, ratios

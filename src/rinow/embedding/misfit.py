@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -144,7 +146,8 @@ def quietest_curvature(D: Floats, least: float) -> float:
 def quietest_near(D: Floats, k: float, n_rungs: int) -> float:
     """The curvature of least noise within so many rungs of k."""
     bounds = k * RATIO**n_rungs, k / RATIO**n_rungs
-    return float(minimize_scalar(lambda x: noise_at(D, x), bounds=bounds, options={"xatol": -PRECISION * k}).x)
+    found: Any = minimize_scalar(partial(noise_at, D), bounds=bounds, options={"xatol": -PRECISION * k})
+    return float(found.x)
 
 
 def noise_at(D: Floats, k: float) -> float:
