@@ -29,6 +29,6 @@ def test_thin_faces_in_any_order(seed, quality):
     for k in range(3):
         again = surface_curvature((V, np.roll(F, k, axis=1)[rng.permutation(len(F))]), quality=quality)
         scale = np.abs(c.gaussian).max()
-        # Nearly singular fits of high order amplify the rounding of 1e-16 by up to 1e7; another vertex of a core is 1e-5.
+        # Nearly singular fits amplify the rounding of 1e-16 by up to 1e7; another vertex in a core is worth 1e-5.
         assert np.abs(again.gaussian - c.gaussian).max() < 1e-7 * scale
         assert np.abs(again.mean - c.mean).max() < 1e-7 * np.abs(c.mean).max()
