@@ -9,6 +9,8 @@ import pytest
 import rinow
 import shapes
 from rinow.errors import FileFormatError, InvalidInputError, InvalidMeshError
+from rinow.io.point_files import holds_points
+from rinow.io.tables import read_points
 
 V, F, *_ = shapes.tetrahedron()
 K = np.array([0.1, np.nan, -0.0, 1e300])
@@ -24,6 +26,19 @@ def test_an_archive_of_numpy_is_read(tmp_path):
     assert set(mesh.vertex_data) == {"k", "m"}
     assert "split" in mesh.notes[0]
     assert mesh.notes[1] == "arrays of another length were left out: cells, name."
+
+
+def test_vertices_and_faces_are_names_as_good_as_v_and_f(tmp_path):
+    path = tmp_path / "a.npz"
+    np.savez(path, vertices=V, faces=F, k=K)
+    mesh = rinow.read_mesh(path)
+    np.testing.assert_array_equal(mesh.vertices, V)
+    np.testing.assert_array_equal(mesh.faces, F)
+    assert list(mesh.vertex_data) == ["k"]
+    assert not holds_points(path)
+    np.savez(path, vertices=V, k=K)
+    assert holds_points(path)
+    np.testing.assert_array_equal(read_points(path), V)
 
 
 @pytest.mark.parametrize(

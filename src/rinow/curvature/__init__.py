@@ -15,6 +15,8 @@ Surfaces
       `length_noise`, `unseen`.
     - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale` with `charts`, `searches`, `patch_tasks`,
       `ends`.
+    - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale` with `charts` and `lack_of_fit`,
+      `patch_tasks`, `ends`.
     - Both: `lifted`; `auto` with `unresolved`.
     - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`, `exact_facets`,
       `flat`, `strays`; `rounding` of positions.

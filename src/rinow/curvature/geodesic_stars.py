@@ -256,7 +256,8 @@ def _estimate(mesh: TriangleMesh | IntrinsicMesh, values: Floats, radii: Floats)
     sums, shares = flow.means(np.column_stack([np.where(known, squares, 0.0), known.astype(np.float64)]), PASSES).T
     squares = CALIBRATION**2 * np.divide(sums, shares, out=values[0] ** 2, where=shares > 0.0)
     small = np.flatnonzero(radii < RESOLVED * flow.spacing)
-    squares[small] += values[0, small] ** 2 * (flow.spacing[small] / radii[small]) ** 4
+    with np.errstate(over="ignore"):  # a radius of nothing sees nothing: the spread is infinite
+        squares[small] += values[0, small] ** 2 * (flow.spacing[small] / radii[small]) ** 4
     spread = np.sqrt(squares)
     missing = np.isnan(values[0])
     radii[missing], spread[missing] = np.nan, np.nan

@@ -161,7 +161,7 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
 def _nearest_rung(radius: float, noise: LengthNoise) -> Floats:
     """(n_vertices,): the number of steps of the ladder whose ball has nearly that radius."""
     with np.errstate(all="ignore"):
-        steps = radius**2 / (SUPPORT * noise.step)
+        steps = np.square(radius / np.sqrt(SUPPORT * noise.step))
     between = np.sqrt(np.multiply(LADDER[1:], np.maximum(LADDER[:-1], 0.5)))
     return np.asarray(LADDER)[np.searchsorted(between, np.nan_to_num(steps))]
 

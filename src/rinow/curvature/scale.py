@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.centres import cover, flat_frames, members_of_discs, turns
 from rinow.curvature.charts import MEAN_ORDER, WIDER, Choice, log_ratios, lower
+from rinow.curvature.lack_of_fit import squared_biases_by_residuals
 from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
 from rinow.curvature.stencils import N_BLOCKS
 from rinow.kernels import balls, covers, patch_driver, patch_fits, risks
@@ -101,7 +102,7 @@ class Samples(NamedTuple):
     The vertices in the order in which they become centres; for each vertex the samples near it (compressed rows); for
     each sample the vertices it speaks for (compressed rows), its logarithmic risks of H over the plane, of K over the
     torus, and of both over the mean plane, for each radius and order, `log_ratios` of plane and torus, its choice,
-    noise and spacing.
+    noise and spacing, and whether its bias was seen, and not only guessed.
     """
 
     turns: Ints
@@ -116,6 +117,7 @@ class Samples(NamedTuple):
     choice: Choice
     noise: Floats
     spacing: Floats
+    is_seen: Bools
 
 
 class Examined(NamedTuple):
@@ -159,8 +161,19 @@ def sample(sheet: balls.Sheet, ladder: Ladder, is_refined: bool, tasks: Tasks, s
     member_starts, members = members_of_discs(sheet, everything, centres, NEAR * radius, room)
     t = csr_array((np.ones(len(members), np.bool_), members, member_starts), shape=(m, n)).tocsc()
     starts, near = t.indptr.astype(np.int32), t.indices.astype(np.int32)
+    is_seen = np.asarray(~np.isnan(torus.logs).all(axis=(1, 2)))
+    for examined in (pilot, torus, plane):
+        _log_guesses(examined)
     logs = pilot.logs, torus.logs, plane.logs, ratios
-    return Samples(order, starts, near, member_starts, members, *logs, choice, torus.noise, sheet.spacing[centres])
+    found = choice, torus.noise, sheet.spacing[centres], is_seen
+    return Samples(order, starts, near, member_starts, members, *logs, *found)
+
+
+def _log_guesses(examined: Examined) -> None:
+    """Where no bias is seen, at any radius and order, the choice with a guessed one is all that there is to choose."""
+    logs, (radius, order, risk) = examined.logs, examined.choice
+    rows = np.flatnonzero(np.isnan(logs).all(axis=(1, 2)) & (radius >= 0))
+    logs[rows, radius[rows], order[rows] - 2] = np.log(risk[rows])
 
 
 def _examine(
@@ -188,16 +201,19 @@ def _examine(
     noise = np.fmin.reduce(medians, axis=1, initial=np.inf) / spacing**2
     noise[noise == np.inf] = 0.0
     noise = np.maximum(noise, ROUNDING**2)
+    ratios = np.fmin(medians.reshape(residuals.shape) / spacing[:, None, None] ** 2, residuals) / noise[:, None, None]
+    missed = squared_biases_by_residuals(ratios, noise, ladder.reaches, curvedness * spacing, errors_of == MEAN)
     s2 = np.repeat(noise, n_radii)[:, None]
     comparison = s2 * tables.bias_variance
     known = patch_fits.Tables(
         (s2 * tables.variance + s2 * s2 * tables.second).astype(np.float32),
         (tables.bias - comparison).astype(np.float32), comparison.astype(np.float32),
-        tables.leverage, tables.step - s2 * tables.step_variance, *(x[:0] for x in tables[5:]),
+        tables.leverage, np.fmax(tables.step - s2 * tables.step_variance, missed.reshape(len(s2), N_ORDERS)),
+        *(x[:0] for x in tables[5:]),
     )  # fmt: skip
     logs = np.full((m, n_radii, N_ORDERS), np.nan)
     power = 2 if errors_of == MEAN else 4
-    choice = _least(ladder, spacing, power, known, rows, low, high, links, 1, logs)
+    choice = _least(ladder, centres, spacing, power, known, rows, low, high, links, 1, logs)
     return Examined(logs - power * np.log(spacing)[:, None, None], choice, noise * spacing**2, residuals)
 
 
@@ -247,11 +263,11 @@ def select(
     np.cumsum(high - low + 1, out=rows[1:])
     fitting = ladder.fitting(patch_driver.TABLES, sheet, centres, frames, low, high, top, rows, noise, BOTH, curvedness)
     place, no_logs = (rows, low, high, links, passes), np.empty((0, 0, 0))
-    return _least(ladder, spacing, 4, fill_tables(fitting, True, tasks, 0.4), *place, no_logs)
+    return _least(ladder, centres, spacing, 4, fill_tables(fitting, True, tasks, 0.4), *place, no_logs)
 
 
 def _least(
-    ladder: Ladder, spacing: Floats, power: int, tables: patch_fits.Tables, rows: NDArray[np.int64],
+    ladder: Ladder, centres: Ints, spacing: Floats, power: int, tables: patch_fits.Tables, rows: NDArray[np.int64],
     low: Ints, high: Ints, links: tuple[Ints, Ints], passes: int, logs: Floats,
 ) -> Choice:  # fmt: skip
     """The choice of least risk, which is in units of length; its logarithms in those of the spacings.
@@ -263,7 +279,7 @@ def _least(
     variance = _averaged(tables.variance, *place, 1)  # last, since a single pass takes new memory
     averages = (variance, bias, bias_variance, step)
     choice = _empty_choice(len(spacing))
-    risks.least_risks(rows, low, high, ladder.reaches, tables, *averages, *choice, logs)
+    risks.least_risks(rows, low, high, ladder.reaches, ladder.factors[centres], tables, *averages, *choice, logs)
     return choice._replace(risk=choice.risk / spacing**power)
 
 

@@ -237,9 +237,13 @@ def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints
 
 
 def shrinkage(samples: Samples, out: Floats) -> Floats:
-    """Positive-part shrinkage of K towards 0, from its mean square and mean risk around the samples."""
+    """Positive-part shrinkage of K towards 0, from its mean square and mean risk around the samples.
+
+    A guess of what nothing shows is no reason to draw K anywhere.
+    """
     factors, shrinkage = np.empty(len(samples.noise)), np.empty(len(out))
     risks.disc_shrinkage(samples.member_starts, samples.members, out[:, 0], out[:, 2], factors)
+    factors[~samples.is_seen] = 1.0
     risks.vertex_means(samples.starts, samples.near, factors, shrinkage)
     return shrinkage
 

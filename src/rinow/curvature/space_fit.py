@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow.embedding.point_set import Misfit, least_misfit
+from rinow.embedding.misfit import Misfit, least_misfit
 
 __all__ = ["N_ORDERS", "UNKNOWNS", "LocalFit", "fit_at_first"]
 

@@ -172,7 +172,8 @@ def wald_curvature(
     found = EmbeddingCurvatures(found.values[some], found.count[some], found.kind[some], found.condition[some])
     limit = limit_at_first(D, Q[some], found, _errors(sixes[some], found, ball.rtol))
     exists = n_quadruples >= FEWEST and n_without <= WITHOUT_VALUE * n_quadruples
-    exists &= limit.scatter * float(in_unit(radius, -exponent)) ** 2 < SCATTER and limit.contrast < CONTRAST
+    length = float(in_unit(radius, -exponent))
+    exists &= limit.scatter * length * length < SCATTER and limit.contrast < CONTRAST
     value, error = (float(in_unit(x, -2 * exponent)) for x in (limit.value, limit.standard_error))
     return WaldCurvature(value, error, n_quadruples, n_without, bool(exists), radius)
 

@@ -18,13 +18,15 @@ from rinow.io.fields import Fields, Units, units_text
 from rinow.io.polygons import Runs, surface_triangles
 from rinow.mesh import TriangleMesh
 
-__all__ = ["read_arrays", "read_npz", "write_npz"]
+__all__ = ["FACES", "VERTICES", "read_arrays", "read_npz", "write_npz"]
 
 _RESERVED = ("V", "F", "units")
+VERTICES, FACES = ("V", "vertices"), ("F", "faces")
+"""Names of the arrays, the first ones as `write_npz` gives them."""
 
 
 def read_npz(path: Path) -> TriangleMesh:
-    """Read ``V`` (n_vertices, 3), ``F`` (n_faces, corners) and the fields of an NPZ file.
+    """Read ``V`` or ``vertices`` (n_vertices, 3), ``F`` or ``faces`` (n_faces, corners) and the fields of an NPZ file.
 
     Parameters
     ----------
@@ -42,16 +44,19 @@ def read_npz(path: Path) -> TriangleMesh:
         If an array is missing, pickled or truncated, or an index has a fault.
     """
     arrays = read_arrays(path)
-    missing = [name for name in ("V", "F") if name not in arrays]
+    held = [next((name for name in names if name in arrays), None) for names in (VERTICES, FACES)]
+    missing = [names[0] for names, name in zip((VERTICES, FACES), held, strict=True) if name is None]
     if missing:
-        raise FileFormatError(f"the archive holds {', '.join(arrays)} but no {missing[0]}; V and F are needed.")
-    V, F = arrays["V"], arrays["F"]
+        raise FileFormatError(
+            f"the archive holds {', '.join(arrays)} but no {missing[0]}; V and F, or vertices and faces, are needed."
+        )
+    V, F = (arrays[str(name)] for name in held)
     if V.ndim != 2 or F.ndim != 2 or (F.size and F.dtype.kind not in "iu"):
         raise FileFormatError(
             f"V has shape {V.shape}, F {F.shape} and type {F.dtype}; give floats (n, 3), integers (m, 3)."
         )
     faces, notes = surface_triangles(len(V), Runs(F.reshape(-1), F.shape[1]) if F.size else None)
-    rest = {name: a for name, a in arrays.items() if name not in _RESERVED}
+    rest = {name: a for name, a in arrays.items() if name not in (*held, "units")}
     fields = {name: a for name, a in rest.items() if a.ndim and len(a) == len(V) and a.dtype.kind in "biuf"}
     if len(fields) < len(rest):
         notes = (

@@ -14,6 +14,7 @@ from rinow.errors import FileFormatError
 from rinow.io.atomic import check_targets
 from rinow.io.faults import reading, writing
 from rinow.io.fields import renamed
+from rinow.io.npz import FACES
 from rinow.io.ply import has_faces, write_ply_points
 from rinow.io.tables import TABLE_SUFFIXES, read_points, write_columns
 
@@ -43,7 +44,7 @@ def holds_points(path: Path) -> bool:
         if not zipfile.is_zipfile(path):
             return False
         with zipfile.ZipFile(path) as archive:
-            return "F.npy" not in archive.namelist()
+            return not {f"{name}.npy" for name in FACES} & set(archive.namelist())
     return suffix in TABLE_SUFFIXES
 
 

@@ -16,7 +16,7 @@ from rinow.errors import FileFormatError
 from rinow.io.atomic import check_targets, replacing
 from rinow.io.faults import reading, writing
 from rinow.io.mesh_files import read_mesh
-from rinow.io.npz import read_arrays
+from rinow.io.npz import VERTICES, read_arrays
 from rinow.io.ply import read_ply_points
 from rinow.io.text_numbers import numbers_of_rows
 
@@ -29,7 +29,7 @@ TABLE_SUFFIXES = (*TEXT, ".npy", ".npz")
 MARKS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 """Marks at the beginning of text written by spreadsheets."""
 
-POINT_NAMES = ("points", "P", "V")
+POINT_NAMES = ("points", "P", *VERTICES)
 DISTANCE_NAMES = ("distances", "D")
 
 
@@ -41,7 +41,7 @@ def read_points(path: str | os.PathLike[str]) -> Floats:
     path : path
         Text with one point per line (.csv, .tsv, .txt, .xyz, .dat; commas, semicolons or white space; beside semicolons
         commas are decimal marks; a heading and lines that begin with # are skipped), .npy, .npz (its only array, or
-        ``points``, ``P`` or ``V``), .ply, or any file that `rinow.read_mesh` reads.
+        ``points``, ``P``, ``V`` or ``vertices``), .ply, or any file that `rinow.read_mesh` reads.
 
     Returns
     -------

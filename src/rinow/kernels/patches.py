@@ -163,8 +163,21 @@ def chosen_order(wanted, top, fit):
 
 
 @lean
+def lightest(start, stop, values):
+    """The row of least weight; before the first one without any."""
+    row = start if start < stop else start - 1
+    for i in range(start + 1, stop):
+        if values[i, 0] < values[row, 0]:
+            row = i
+    return row
+
+
+@lean
 def write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, patch, sheet, ball, vertices, values):
-    """Write the weighted values of one patch at the vertices nearer than patch.core spacings to its centre."""
+    """Write the weighted values of one patch at the vertices nearer than patch.core spacings to its centre.
+
+    Some of them may be reached over vertices farther away only, so that there are more than rows: the heaviest stay.
+    """
     k, centre, points = start, ball.members[0], ball.points
     c, spacing, core = fit.covariances[order], sheet.spacing[centre], patch.core
     at_centre, is_crowded, inside = c[0] + c[3] + c[5], size < ROOMY * TERMS[order], -1
@@ -177,28 +190,29 @@ def write_core(start, stop, size, order, fit, coefficients, bias, reach, frame, 
         if not s < core * core:
             continue
         inside += 1
-        if k == stop or stencils.squared_distance(sheet.vertices, centre, q) >= (core * spacing) ** 2:
+        if stencils.squared_distance(sheet.vertices, centre, q) >= (core * spacing) ** 2:
             continue
-        out = values[k]
+        gain = fit.bends[inside] / at_centre if is_crowded else 1.0
+        weight = (1.0 - s / (core * core)) ** 2 * most * min(1.0, LOOSE / gain) ** 2
+        row = k if k < stop else lightest(start, stop, values)
+        if row < k and not (row >= start and weight > values[row, 0]):
+            continue
+        out = values[row]
         x, y = u - fit.origin[0], v - fit.origin[1]
         jet = polynomial(coefficients, order, reach, x, y)
         if not write_values(u, v, jet, frame, spacing, out):
             continue
-        weight = (1.0 - s / (core * core)) ** 2 * most
-        gain = fit.bends[inside] / at_centre if is_crowded else 1.0
-        risk = patch.risk * max(gain, 1.0)
-        weight *= min(1.0, LOOSE / gain) ** 2
         sign = 1.0
         if not sheet.is_oriented:
             dot = out[11] * sheet.normals[q, 0] + out[12] * sheet.normals[q, 1] + out[13] * sheet.normals[q, 2]
             sign = 1.0 if dot >= 0.0 else -1.0
         out[1] -= bias
-        out[3], out[4], out[14] = risk, reach * spacing, (points[2, j] - jet[0]) * spacing
+        out[3], out[4], out[14] = patch.risk * max(gain, 1.0), reach * spacing, (points[2, j] - jet[0]) * spacing
         out[0] = weight
         for m in range(1, N_VALUES):
             out[m] *= weight * (sign if m == 2 or 5 <= m else 1.0)
-        vertices[k] = q
-        k += 1
+        vertices[row] = q
+        k = max(k, row + 1)
 
 
 @lean

@@ -95,7 +95,9 @@ def squared_biases(t, ratio, upper, tables, bias, bias_variance, step, out):
 
 
 @parallel_kernel
-def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance, step, radius, order, risk, logs):
+def least_risks(
+    rows, low, high, reaches, factors, tables, variance, bias, bias_variance, step, radius, order, risk, logs
+):
     """Write radius index (-1: none), order and value of the least risk of each centre; logs (n, R, 7) unless empty."""
     for i in prange(len(low)):
         biases = np.empty(N_ORDERS)
@@ -108,7 +110,7 @@ def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance,
             ratio = reaches[low[i] + k] / reaches[last] if upper >= 0 else 1.0
             squared_biases(t, ratio, upper, tables, bias, bias_variance, step, biases)
             upper, last = t, low[i] + k
-            floor = ROUNDING * ROUNDING * (1.0 + math.log(reaches[low[i] + k] / MIDDLE) ** 2)
+            floor = ROUNDING * ROUNDING * (1.0 + math.log(reaches[low[i] + k] * factors[i] / MIDDLE) ** 2)
             for d in range(N_ORDERS):
                 if math.isnan(tables.variance[t, d]) or math.isnan(biases[d]):
                     continue
@@ -121,7 +123,7 @@ def least_risks(rows, low, high, reaches, tables, variance, bias, bias_variance,
                 fallback = low[i] + k
         if best_order == 0 and fallback >= 0:
             t = rows[i] + fallback - low[i]
-            guess = UNSEEN / reaches[fallback] ** 2
+            guess = UNSEEN / (reaches[fallback] * factors[i]) ** 2
             best_radius, best_order, best = fallback, 2, tables.variance[t, 0] + guess * guess
         radius[i], order[i], risk[i] = best_radius, best_order, best
 
