@@ -5,7 +5,7 @@ import pytest
 
 import rinow
 import shapes
-from rinow.curvature import scale, sectional
+from rinow.curvature import charts, scale, sectional
 
 SIDE = 45
 """Vertices along a side of the waves, over lengths of 6."""
@@ -40,8 +40,8 @@ def error(shape, quality="best"):
 
 
 def only_tori(monkeypatch):
-    for module in (scale, sectional):
-        monkeypatch.setattr(module, "lower", lambda torus, plane, logs, turns: (np.zeros(len(logs), np.bool_), torus))
+    for module in (charts, sectional):
+        monkeypatch.setattr(module, "leads", lambda torus, plane, logs, turns: np.full(len(logs), -np.inf))
 
 
 @pytest.mark.parametrize("quality", ("best", "fast"))
