@@ -111,7 +111,7 @@ def blended(here: Found, there: Found, is_open: NDArray[np.bool_]) -> tuple[Foun
     """What was found in one chart, then what in the other promises an error like that, and the rows of both.
 
     Charts err differently: two fits that differ show an error that neither of them does, and together err less.  The
-    least risk around is that in either chart.
+    least risk around is that in either chart, so that of two patches at one place the better one weighs much more.
     """
     with np.errstate(invalid="ignore"):
         is_alike = is_open & (there.choice.radius >= 0) & (there.choice.risk < ALIKE * here.choice.risk)

@@ -41,7 +41,7 @@ QUARTIC = 3
 """Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
 EDGE_POWER = 1.5
 """`Quality.power` beside a boundary, where few patches cover a vertex and their errors differ much."""
-EDGE_CALIBRATION = 1.8
+EDGE_CALIBRATION = 1.65
 """`Quality.calibration` at a boundary, where patches of any quality choose their order and radius by themselves."""
 APART = 3.0
 """Squared error over the variance between the patches of a vertex: they share most of their points, so that they err
@@ -68,7 +68,7 @@ class Quality(NamedTuple):
     calibration: float
 
 
-QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5, 1.4), "fast": Quality(0.3, 1.2, False, 1.0, 1.8)}
+QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5, 1.2), "fast": Quality(0.3, 1.2, False, 1.0, 1.5)}
 
 
 def sectional(
@@ -191,9 +191,9 @@ def blended_patches(
         found.put(rows, look(search, sheet, ladder, known.at(rows), found.at(rows), tasks, share))
         rows = rows[is_open[rows]]
         there.put(rows, look(search, sheet, ladder, known.at(rows), there.at(rows), tasks, share))
+    found.least[~beside] = there.least[~beside] = 1.0  # inside many patches cover a vertex
     (frames, choice, least), rows = blended(found, there, is_open)
-    centres, core, at_centres, beside = centres[rows], core[rows], at_centres[rows], beside[rows]
-    least[~beside] = 1.0
+    centres, core, at_centres = centres[rows], core[rows], at_centres[rows]
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
     totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
