@@ -41,7 +41,7 @@ QUARTIC = 3
 """Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
 EDGE_POWER = 1.5
 """`Quality.power` beside a boundary, where few patches cover a vertex and their errors differ much."""
-EDGE_CALIBRATION = 1.65
+EDGE_CALIBRATION = 1.42
 """`Quality.calibration` at a boundary, where patches of any quality choose their order and radius by themselves."""
 APART = 3.0
 """Squared error over the variance between the patches of a vertex: they share most of their points, so that they err
@@ -68,7 +68,7 @@ class Quality(NamedTuple):
     calibration: float
 
 
-QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5, 1.2), "fast": Quality(0.3, 1.2, False, 1.0, 1.5)}
+QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5, 1.2), "fast": Quality(0.3, 1.2, False, 1.0, 1.8)}
 
 
 def sectional(
@@ -186,7 +186,7 @@ def blended_patches(
     known = Centres(centres, core, *window, at_centres, curvedness)
     found, there = Found(frames, choice, np.ones(len(centres))), Found(others, other, np.ones(len(centres)))
     del between, low, top, logs, pilot, torus, plane  # the searches need the memory
-    share = 1.0 / (len(centres) + np.count_nonzero(is_open))
+    share = 1.0 / max(len(centres) + np.count_nonzero(is_open), 1)
     for search, rows in ((INSIDE, np.flatnonzero(~beside & quality.selects)), (BESIDE, np.flatnonzero(beside))):
         found.put(rows, look(search, sheet, ladder, known.at(rows), found.at(rows), tasks, share))
         rows = rows[is_open[rows]]

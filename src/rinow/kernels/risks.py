@@ -12,6 +12,9 @@ KAPPA = 0.2
 """The squared bias is at least this share of the variance of the comparison that shows it."""
 DECAY = 10.0
 """The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
+WORSE = 30.0
+"""Leverage over that of two orders below from which on one of the two highest orders has more bias than that: of few
+rows of points it interpolates what it cannot resolve."""
 ODD = 0.5
 """The squared bias of an odd order is at least this share of the lesser one of the even orders beside it."""
 UNSEEN = 0.3
@@ -85,6 +88,9 @@ def squared_biases(t, ratio, upper, tables, bias, bias_variance, step, out):
     for i in range(N_BIASES, N_ORDERS):
         lower = out[i - 4]
         out[i] = out[i - 2] * min(1.0, DECAY * out[i - 2] / lower) if lower > 0.0 else out[i - 2]
+        most = WORSE * tables.leverage[t, i - 2]
+        if tables.leverage[t, i] > most > 0.0:
+            out[i] *= tables.leverage[t, i] / most
     for i in range(N_ORDERS):
         if step[t, i] > out[i]:
             out[i] = step[t, i]
