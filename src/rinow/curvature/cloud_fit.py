@@ -28,8 +28,8 @@ __all__ = ["cloud_estimate"]
 
 Floats = NDArray[np.float64]
 
-UNDECIDED = 1.5
-"""Standard error times radius² above which nothing is known, as for metric spaces: points on surfaces stay below 1,
+UNDECIDED = 1.3
+"""Standard error times radius² above which nothing is known: points on surfaces stay below 0.9,
 those that fill a part of space have 2 to 25."""
 AGREED = 0.4
 """Share of the triangles of the stars around on which their neighbours agree, above which the surface is known all the

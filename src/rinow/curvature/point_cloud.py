@@ -77,7 +77,7 @@ def point_cloud_curvature(points: ArrayLike, *, radius: float | None = None) -> 
 
     Points far from all others, and points beside the quadric of least moduli through those around them, by eight
     standard deviations of the noise and a third of the spacing, alone or much rarer than those, are left out: they are
-    UNRESOLVED.  So are all of fewer than 24 points, and points whose standard error exceeds 1.5/radius², unless the
+    UNRESOLVED.  So are all of fewer than 24 points, and points whose standard error exceeds 1.3/radius², unless the
     stars around share two fifths of their triangles: where points fill a part of space, and on most of a curve.
 
     The mirror image of a cloud has the same curvature, up to the sign of H: where rectangles of points may be cut along
