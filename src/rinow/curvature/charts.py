@@ -34,7 +34,7 @@ class Choice(NamedTuple):
     order: Ints
     risk: Floats
 
-    def at(self, rows: NDArray[np.intp] | Bools) -> Choice:
+    def at(self, rows: slice | NDArray[np.intp] | Bools) -> Choice:
         """That of some of them."""
         return Choice(self.radius[rows], self.order[rows], self.risk[rows])
 

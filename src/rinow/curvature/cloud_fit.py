@@ -29,8 +29,8 @@ __all__ = ["cloud_estimate"]
 Floats = NDArray[np.float64]
 
 UNDECIDED = 1.3
-"""Standard error times radius² above which nothing is known: points on surfaces stay below 0.9,
-those that fill a part of space have 2 to 25."""
+"""Standard error times radius² above which nothing is known.  On surfaces with noise of up to a tenth of the spacing it
+is less at 99 of 100 points; of points that fill a part of space the median is 4."""
 AGREED = 0.4
 """Share of the triangles of the stars around on which their neighbours agree, above which the surface is known all the
 same: nearly all tips of noisy needles exceed it, and one in twenty points of those that fill space."""

@@ -13,11 +13,11 @@ from rinow.curvature.patch_tasks import Tasks
 from rinow.curvature.scale import Ladder, curvedness_of, select
 from rinow.kernels import balls
 
-__all__ = ["BESIDE", "INSIDE", "OF_GAUSSIAN", "Centres", "Found", "Search", "look"]
+__all__ = ["Centres", "Found", "Search", "blended", "look", "search_both"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
-Rows = NDArray[np.intp] | NDArray[np.bool_]
+Rows = slice | NDArray[np.intp] | NDArray[np.bool_]
 
 NARROW = 5
 """Another time only so many radii more and less than that chosen are looked at."""
@@ -75,7 +75,7 @@ class Found(NamedTuple):
         """Some of them."""
         return Found(self.frames[rows], self.choice.at(rows), self.least[rows])
 
-    def put(self, rows: NDArray[np.intp], found: Found) -> None:
+    def put(self, rows: Rows, found: Found) -> None:
         """Take over, in place, what some of them found."""
         self.frames[rows], self.least[rows] = found.frames, found.least
         for column, values in zip(self.choice, found.choice, strict=True):
@@ -85,15 +85,16 @@ class Found(NamedTuple):
 def look(
     search: Search, sheet: balls.Sheet, ladder: Ladder, centres: Centres, start: Found, tasks: Tasks, share: float
 ) -> Found:
-    """What centres find that start from some frames and choices, in the charts of these, a share of the work each."""
-    if not len(centres.vertices):
-        return start
+    """What centres find that start from some frames and choices, in the charts of these, a share of the work each.
+
+    The frames, which are large, are written in place.
+    """
     frames, choice, low, high = start.frames, start.choice, centres.low, centres.high
     is_level: NDArray[np.bool_] = np.all(frames[:, 9:] == 0.0, axis=1)
     links = members_of_discs(sheet, centres.vertices, centres.vertices, search.around * centres.core)
     tasks.part = share * len(frames) / search.rounds
     for _ in range(search.rounds):
-        frames = ladder.frames(sheet, centres.vertices, frames, choice, tasks, is_level)
+        frames[:] = ladder.frames(sheet, centres.vertices, frames, choice, tasks, is_level)
         bend = np.where(is_level, centres.curvedness, curvedness_of(frames))
         window = low, high, centres.top, centres.noise
         found = select(sheet, ladder, centres.vertices, frames, bend, window, links, PASSES, tasks)
@@ -107,19 +108,37 @@ def look(
     return Found(frames, choice, least)
 
 
-def blended(here: Found, there: Found, is_open: NDArray[np.bool_]) -> tuple[Found, NDArray[np.intp]]:
-    """What was found in one chart, then what in the other promises an error like that, and the rows of both.
+def search_both(
+    sheet: balls.Sheet, ladder: Ladder, centres: Centres, charts: tuple[Found, Found], also: NDArray[np.intp],
+    beside: NDArray[np.bool_], inside_too: bool, tasks: Tasks,
+) -> None:  # fmt: skip
+    """Let centres look in their chart, and those of the rows `also` in the other one, in place.
+
+    Centres beside a boundary look, those inside on demand.
+    """
+    share = 1.0 / max(len(beside) + len(also), 1)
+    for found, known, is_beside in ((charts[0], centres, beside), (charts[1], centres.at(also), beside[also])):
+        for search, is_own in ((INSIDE, ~is_beside & inside_too), (BESIDE, is_beside)):
+            if is_own.any():
+                rows = slice(None) if is_own.all() else np.flatnonzero(is_own)  # a view of all costs no memory
+                found.put(rows, look(search, sheet, ladder, known.at(rows), found.at(rows), tasks, share))
+        found.least[~is_beside] = 1.0  # inside many patches cover a vertex
+
+
+def blended(here: Found, there: Found, also: NDArray[np.intp]) -> tuple[Found, NDArray[np.intp]]:
+    """What was found in one chart, then what in the other one promises an error like that, and the rows of both.
 
     Charts err differently: two fits that differ show an error that neither of them does, and together err less.  The
     least risk around is that in either chart, so that of two patches at one place the better one weighs much more.
     """
     with np.errstate(invalid="ignore"):
-        is_alike = is_open & (there.choice.radius >= 0) & (there.choice.risk < ALIKE * here.choice.risk)
-        around = np.fmin(here.least * here.choice.risk, np.where(is_alike, there.least * there.choice.risk, np.nan))
-        parts = [found._replace(least=around / found.choice.risk) for found in (here, there)]
-    also = np.flatnonzero(is_alike)
-    rows = np.concatenate([np.arange(len(is_open)), also])
-    one, other = parts[0], parts[1].at(also)
-    radius, order = (np.concatenate([a, b]) for a, b in zip(one.choice[:2], other.choice[:2], strict=True))
-    choice = Choice(radius, order, np.concatenate([one.choice.risk, other.choice.risk]))
-    return Found(np.concatenate([one.frames, other.frames]), choice, np.concatenate([one.least, other.least])), rows
+        is_alike = (there.choice.radius >= 0) & (there.choice.risk < ALIKE * here.choice.risk[also])
+    rows, there = also[is_alike], there.at(is_alike)
+    risk = here.choice.risk[rows]
+    with np.errstate(invalid="ignore"):  # without a fit the risk is infinite, and what is around over it is 0
+        around = np.fmin(here.least[rows] * risk, there.least * there.choice.risk)
+    here.least[rows], there.least[:] = around / risk, around / there.choice.risk
+    radius, order = (np.concatenate([a, b]) for a, b in zip(here.choice[:2], there.choice[:2], strict=True))
+    choice = Choice(radius, order, np.concatenate([here.choice.risk, there.choice.risk]))
+    both = Found(np.concatenate([here.frames, there.frames]), choice, np.concatenate([here.least, there.least]))
+    return both, np.concatenate([np.arange(len(here.least)), rows])

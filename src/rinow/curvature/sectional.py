@@ -17,7 +17,7 @@ from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Ladder, Samples, chosen_at, curvedness_of, sample, scales, windows
-from rinow.curvature.searches import BESIDE, INSIDE, Centres, Found, blended, look
+from rinow.curvature.searches import Centres, Found, blended, search_both
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
@@ -40,7 +40,8 @@ Progress = Callable[[int, int], object]
 QUARTIC = 3
 """Index of the least radius whose ball holds enough vertices for order 4, which shows the bias of order 2."""
 EDGE_POWER = 1.5
-"""`Quality.power` beside a boundary, where few patches cover a vertex and their errors differ much."""
+"""`Quality.power` beside a boundary, where few patches cover a vertex and their errors differ much, and between patches
+over two charts at one place."""
 EDGE_CALIBRATION = 1.42
 """`Quality.calibration` at a boundary, where patches of any quality choose their order and radius by themselves."""
 APART = 3.0
@@ -105,7 +106,8 @@ def sectional(
     Haantjes and Menger see a curve by the deviation of chords from arcs.  Here the arcs are those of a torus with
     the normal curvatures k1, k2 of a first fit: (u, v) are arc lengths on it and w is the distance from it.  Where the
     surface does not keep its curvatures over a ball, the mean plane of a wider ball takes the place of the torus, if
-    by the residuals of both and the errors expected it promises less error.  The polynomial :math:`w = f(u, v)` of
+    by the residuals of both and the errors expected it promises less error; where both promise about the same, and at
+    boundaries, fits over both are averaged.  The polynomial :math:`w = f(u, v)` of
     least squares over a ball gives
 
     .. math:: K = \frac{L N - M^2}{\det g}, \quad H = \frac{g_{22} L - 2 g_{12} M + g_{11} N}{2 \det g}
@@ -174,9 +176,9 @@ def blended_patches(
     frames = ladder.frames(sheet, centres, flat_frames(sheet, centres), pilot, tasks, np.zeros_like(beside))
     lead = leads(torus, plane, ratios[centres], ladder.turns(sheet, centres, frames, plane))
     is_level, is_open = lead > 0.0, beside & ~np.isneginf(lead) | (quality.selects & (np.abs(lead) < DOUBTFUL))
-    choice, other = either(is_level, torus, plane), either(~is_level, torus, plane)
-    curvedness, others = curvedness_of(frames), frames.copy()
-    frames[is_level, 9:], others[~is_level, 9:] = 0.0, 0.0
+    choice, also, curvedness = either(is_level, torus, plane), np.flatnonzero(is_open), curvedness_of(frames)
+    there = Found(frames[also], either(~is_level, torus, plane).at(also), np.ones(len(also)))
+    frames[is_level, 9:], there.frames[~is_level[also], 9:] = 0.0, 0.0
     if not quality.selects:
         rows = np.flatnonzero(is_level & ~beside)
         is_plane = np.ones(len(rows), np.bool_)
@@ -184,15 +186,11 @@ def blended_patches(
     high = high[centres] + np.where(beside, EDGE_RADII, 0)
     window = _widened(low[centres], high, top[centres], len(ladder.reaches))
     known = Centres(centres, core, *window, at_centres, curvedness)
-    found, there = Found(frames, choice, np.ones(len(centres))), Found(others, other, np.ones(len(centres)))
+    here = Found(frames, choice, np.ones(len(centres)))
     del between, low, top, logs, pilot, torus, plane  # the searches need the memory
-    share = 1.0 / max(len(centres) + np.count_nonzero(is_open), 1)
-    for search, rows in ((INSIDE, np.flatnonzero(~beside & quality.selects)), (BESIDE, np.flatnonzero(beside))):
-        found.put(rows, look(search, sheet, ladder, known.at(rows), found.at(rows), tasks, share))
-        rows = rows[is_open[rows]]
-        there.put(rows, look(search, sheet, ladder, known.at(rows), there.at(rows), tasks, share))
-    found.least[~beside] = there.least[~beside] = 1.0  # inside many patches cover a vertex
-    (frames, choice, least), rows = blended(found, there, is_open)
+    search_both(sheet, ladder, known, (here, there), also, beside, quality.selects, tasks)
+    (frames, choice, least), rows = blended(here, there, also)
+    del here, there
     centres, core, at_centres = centres[rows], core[rows], at_centres[rows]
     rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
     np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
