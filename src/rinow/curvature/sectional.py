@@ -103,12 +103,11 @@ def sectional(
 
     Notes
     -----
-    Haantjes and Menger see a curve by the deviation of chords from arcs.  Here the arcs are those of a torus with
-    the normal curvatures k1, k2 of a first fit: (u, v) are arc lengths on it and w is the distance from it.  Where the
+    Haantjes and Menger see a curve by the deviation of chords from arcs.  Here the arcs are those of a torus with the
+    normal curvatures k1, k2 of a first fit: (u, v) are arc lengths on it and w is the distance from it.  Where the
     surface does not keep its curvatures over a ball, the mean plane of a wider ball takes the place of the torus, if
     by the residuals of both and the errors expected it promises less error; where both promise about the same, and at
-    boundaries, fits over both are averaged.  The polynomial :math:`w = f(u, v)` of
-    least squares over a ball gives
+    boundaries, fits over both are averaged.  The polynomial :math:`w = f(u, v)` of least squares over a ball gives
 
     .. math:: K = \frac{L N - M^2}{\det g}, \quad H = \frac{g_{22} L - 2 g_{12} M + g_{11} N}{2 \det g}
 
