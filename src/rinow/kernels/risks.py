@@ -6,15 +6,12 @@ import numpy as np
 
 from rinow.kernels._jit import inner, parallel_kernel, prange
 from rinow.kernels.nested_fits import N_ORDERS
-from rinow.kernels.patch_fits import N_BIASES
+from rinow.kernels.patch_fits import N_BIASES, WORSE
 
 KAPPA = 0.2
 """The squared bias is at least this share of the variance of the comparison that shows it."""
 DECAY = 10.0
 """The bias of the two highest orders is at most that of two orders below, and this times the ratio seen there."""
-WORSE = 30.0
-"""Leverage over that of two orders below from which on one of the two highest orders has more bias than that: of few
-rows of points it interpolates what it cannot resolve."""
 ODD = 0.5
 """The squared bias of an odd order is at least this share of the lesser one of the even orders beside it."""
 UNSEEN = 0.3
