@@ -22,6 +22,14 @@ def helicoid(n=1600, seed=21):
     return shapes.Shape(points, patch.faces, -((PITCH / (PITCH**2 + v**2)) ** 2), np.zeros(n))
 
 
+def pseudosphere(n=1600, seed=21):
+    """A strip along its rim, where the radius is as large as some spacings and one-sided fits converge slowly."""
+    patch = shapes.open_patch(n, seed=seed)
+    v, u = 1.15 + 0.85 * patch.vertices[:, 0], 2.0 * patch.vertices[:, 1]
+    points = np.column_stack([np.cos(u) / np.cosh(v), np.sin(u) / np.cosh(v), v - np.tanh(v)])
+    return shapes.Shape(points, patch.faces, -np.ones(n), 0.5 * (np.sinh(v) - 1.0 / np.sinh(v)))
+
+
 def cap(n=1600):
     """A square patch of the unit sphere, with corners."""
     patch = shapes.open_patch(n, seed=22)
@@ -92,6 +100,13 @@ def test_odd_terms_show_in_the_next_order(noise, most):
         assert np.exp(np.mean(np.log(errors))) < most
 
 
+def test_a_drift_over_several_orders_shows():
+    # Measured .65; .85 where an order is held against the next and the one after only.
+    samples = [shapes.noisy(pseudosphere(seed=seed), 0.02, seed=seed) for seed in range(31, 39)]
+    errors = [errors_at_boundary(sample)[0] for sample in samples]
+    assert np.exp(np.mean(np.log(errors))) < 0.74
+
+
 def test_errors_of_both_are_the_sum_of_those_of_each():
     shape = shapes.noisy(shapes.irregular_torus(600), 0.02)
     sheet, _ = patch_sheet(TriangleMesh(shape.vertices, shape.faces))
@@ -111,5 +126,8 @@ def test_errors_of_both_are_the_sum_of_those_of_each():
         of_both, of_gaussian, of_mean = (getattr(t, name) for t in (both, gaussian, mean))
         assert np.isfinite(of_both).any()
         # Tables are of single precision, and biases differences of what they sum.
-        expected = of_gaussian + curvedness * of_mean
-        np.testing.assert_allclose(of_both, expected, rtol=1e-4, atol=1e-5 * np.nanmax(of_both))
+        expected, atol = of_gaussian + curvedness * of_mean, 1e-5 * np.nanmax(of_both)
+        if name == "bias":  # of orders 2 and 3 the most of what several above show: of both that of one order
+            assert (of_both[:, :2] <= expected[:, :2] + atol)[np.isfinite(of_both[:, :2])].all()
+            of_both, expected = of_both[:, 2:], expected[:, 2:]
+        np.testing.assert_allclose(of_both, expected, rtol=1e-4, atol=atol)
