@@ -12,6 +12,7 @@ from rinow.curvature.barriers import crease_barriers
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.facets import take_facets
+from rinow.curvature.hull_slivers import without_hull_slivers
 from rinow.curvature.rounding import file_rounding
 from rinow.kernels import cuts
 from rinow.mesh import TriangleMesh
@@ -85,10 +86,12 @@ def one_sided(
     on_crease : (n_vertices,) ndarray of bool
         The vertex has more than one side.
     """
-    cut, origin = cut_along_creases(mesh)
+    is_crease = crease_barriers(mesh)
+    smooth = without_hull_slivers(mesh, is_crease)
+    cut, origin = cut_along_creases(smooth, is_crease if smooth is mesh else None)
     n, n_cut = mesh.n_vertices, cut.n_vertices
-    if cut is mesh:
-        return method(mesh, progress=progress, **options), np.zeros(n, np.bool_)
+    if cut is smooth:
+        return method(cut, progress=progress, **options), np.zeros(n, np.bool_)
 
     def report(done: int, total: int) -> None:
         if progress is not None:

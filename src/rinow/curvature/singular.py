@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rinow._printing import OneLine
 from rinow.curvature.cone_points import LEAST_DEFECT, cone_defects
 from rinow.curvature.creases import CreaseLines, EdgeTurnings, crease_lines_of
+from rinow.curvature.hull_slivers import without_hull_slivers
 from rinow.curvature.notes import mesh_notes
 from rinow.curvature.repairs import repaired
 from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh
@@ -124,7 +125,8 @@ def singular_features(mesh: Any) -> SingularFeatures:
 
     Creases below these angles, features smaller than two edges, and facets of 35° or more in a smooth round (there
     the mesh does not say whether it is a prism or a cylinder) are beyond the method.  Edges with one face, or more
-    than two, are never creases.
+    than two, are never creases, nor are those of triangles that lie along the boundary with an angle above 140°: such
+    ones Delaunay's triangulation of scattered points has over the dents of its hull.
 
     References
     ----------
@@ -149,6 +151,8 @@ def singular_features(mesh: Any) -> SingularFeatures:
     surface, index, notes = repaired(surface)
     names = np.arange(surface.n_vertices) if index is None else np.unique(index, return_index=True)[1]
     notes += mesh_notes(surface, oriented=isinstance(surface, TriangleMesh))
+    if isinstance(surface, TriangleMesh):
+        surface = without_hull_slivers(surface)
     t = surface.topology
     closed = t.vertex_is_boundary | ~t.vertex_is_manifold
     if isinstance(surface, IntrinsicMesh):
