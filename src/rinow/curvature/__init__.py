@@ -14,7 +14,7 @@ Surfaces
     - Edge lengths alone: `angle_defect`, `wald`, `geodesic_stars`; `intrinsic` with `flow`, `waves`, `arcs`,
       `length_noise`, `unseen`.
     - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale` with `charts` and `lack_of_fit`, `searches`,
-      `patch_tasks`, `ends`.
+      `second_look`, `patch_tasks`, `ends`.
     - Both: `lifted`; `auto` with `unresolved`.
     - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`, `exact_facets`,
       `flat`, `strays`; `rounding` of positions.

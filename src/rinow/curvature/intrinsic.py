@@ -41,6 +41,9 @@ FLOOR = 0.1
 WITHIN = 3.0
 """Differences of a value from its reference over the root of its squared bias, at most, so that two spreads hold them.
 S is not symmetric, and waves may grow somewhere: they do so in these differences as well."""
+PROOF, MOST, PROVING_PASSES = 3.0, 9.0, 5
+"""Squared difference from the best of smaller scales over the one expected from which on, in the mean over so many
+rings, it proves a bias; each vertex counts no more than MOST, lest one with a wild value speaks for all around."""
 LARGE, FAR, PATCH = 20_000, 20, 200
 """Vertices from which their order matters, the share of all of them that numbers of neighbours then may be apart, and
 vertices of a patch."""
@@ -144,7 +147,8 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
     for m in LADDER[: bisect_right(LADDER, most_steps)]:
         here = None if wanted is None else wanted == m
         if here is None or here.any():
-            improved = [_improve(best, candidate, here) for candidate in _candidates(m, flow, noise, waves, tau2)]
+            candidates = _candidates(m, flow, noise, waves, tau2)
+            improved = [_improve(best, _beside(best, candidate, flow), here) for candidate in candidates]
             idle = 0 if any(improved) else idle + 1
         if idle == IDLE and here is None:
             break
@@ -223,6 +227,22 @@ def _difference(a: Floats, b: Floats) -> Floats:
     """Coefficients of a minus those of b."""
     n = max(len(a), len(b))
     return np.pad(a, (0, n - len(a))) - np.pad(b, (0, n - len(b)))
+
+
+def _beside(best: IntrinsicCurvature, candidate: Candidate, flow: CurvatureFlow) -> Candidate:
+    """The candidate, with the squared bias that what it differs by from the best of all smaller ones proves."""
+    values, variance, bias, radius = candidate
+    expected = CALIBRATION**2 * (best.variance + best.squared_bias) + variance
+    squares = np.square(values - best.gaussian)
+    with np.errstate(invalid="ignore"):
+        ratios = np.fmin(squares / expected, MOST)
+    if not np.isfinite(ratios).any():
+        return candidate
+    columns = np.column_stack([ratios, squares - expected])
+    columns[~np.isfinite(ratios)] = np.nan
+    ratio, excess = flow.means(columns, PROVING_PASSES).T
+    with np.errstate(invalid="ignore"):
+        return values, variance, np.where(ratio > PROOF, np.fmax(bias, excess), bias), radius
 
 
 def _improve(best: IntrinsicCurvature, candidate: Candidate, where: NDArray[np.bool_] | None) -> bool:

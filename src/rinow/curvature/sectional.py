@@ -18,6 +18,7 @@ from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Ladder, Samples, chosen_at, curvedness_of, sample, scales, windows
 from rinow.curvature.searches import Centres, Found, blended, search_both
+from rinow.curvature.second_look import Values, look_again
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
@@ -200,9 +201,10 @@ def blended_patches(
     expected = in_half_octaves(choice.risk, sheet.spacing[centres] ** -4)
     weights = expected**-quality.power * in_half_octaves(least, np.ones(1)) ** (EDGE_POWER - quality.power)
     add_patches(fitting, CORE * core, expected, weights, totals, tasks, 0.2)
-    out, direction1, direction2 = np.empty((len(totals), 6)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
-    patches.mean_values(totals, sheet.normals, out, direction1, direction2)
-    return out, direction1, direction2, noise
+    values = Values.of(totals, sheet.normals)
+    del totals
+    look_again(sheet, ladder, values, samples.turns, noise, at_edge, (quality.least, quality.power), tasks)
+    return *values, noise
 
 
 def in_half_octaves(variances: Floats, unit: Floats) -> Floats:
