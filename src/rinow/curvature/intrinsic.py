@@ -230,9 +230,13 @@ def _difference(a: Floats, b: Floats) -> Floats:
 
 
 def _beside(best: IntrinsicCurvature, candidate: Candidate, flow: CurvatureFlow) -> Candidate:
-    """The candidate, with the squared bias that what it differs by from the best of all smaller ones proves."""
+    """The candidate, with the squared bias that what it differs by from the best of all smaller ones proves.
+
+    The error of chords, which no variance tells, may be that of the smaller one, or change over it.
+    """
     values, variance, bias, radius = candidate
-    expected = CALIBRATION**2 * (best.variance + best.squared_bias) + variance
+    chords = np.square(UNSEEN * np.square(best.gaussian) * np.square(flow.spacing))
+    expected = CALIBRATION**2 * (best.variance + best.squared_bias) + variance + chords
     squares = np.square(values - best.gaussian)
     with np.errstate(invalid="ignore"):
         ratios = np.fmin(squares / expected, MOST)
