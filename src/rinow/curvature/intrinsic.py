@@ -41,9 +41,10 @@ FLOOR = 0.1
 WITHIN = 3.0
 """Differences of a value from its reference over the root of its squared bias, at most, so that two spreads hold them.
 S is not symmetric, and waves may grow somewhere: they do so in these differences as well."""
-PROOF, MOST, PROVING_PASSES = 3.0, 9.0, 5
+PROOF, MOST, PROVING_PASSES, PROVED = 3.0, 9.0, 5, 8
 """Squared difference from the best of smaller scales over the one expected from which on, in the mean over so many
-rings, it proves a bias; each vertex counts no more than MOST, lest one with a wild value speaks for all around."""
+rings, it proves a bias; each vertex counts no more than MOST, lest one with a wild value speaks for all around.  Scales
+below PROVED hold too little of the surface to hold a bump whole, and half of them is no scale to believe."""
 LARGE, FAR, PATCH = 20_000, 20, 200
 """Vertices from which their order matters, the share of all of them that numbers of neighbours then may be apart, and
 vertices of a patch."""
@@ -148,7 +149,9 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
         here = None if wanted is None else wanted == m
         if here is None or here.any():
             candidates = _candidates(m, flow, noise, waves, tau2)
-            improved = [_improve(best, _beside(best, candidate, flow), here) for candidate in candidates]
+            if m >= PROVED:
+                candidates = (_beside(best, candidate, flow) for candidate in candidates)
+            improved = [_improve(best, candidate, here) for candidate in candidates]
             idle = 0 if any(improved) else idle + 1
         if idle == IDLE and here is None:
             break

@@ -21,6 +21,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
 
+HEIGHT = 4
+"""Column of the heights over the fits."""
 SURE, SMALL = 8.0, 0.1
 """Mean height of a vertex and its neighbours over the fits, in its standard errors and in spacings, from which on it is
 no noise: that of the least noisy fit may be too low by half, and what is smaller bends no ball of a few spacings."""
@@ -37,24 +39,30 @@ FIRST, INNER, OUTER, NARROW = 4, 6, 4, 5
 
 
 class Values(NamedTuple):
-    """What `patches.mean_values` tells at the vertices of a sheet: its columns, and principal directions."""
+    """At the vertices of a sheet what `patches.mean_values` tells: its columns, and principal directions.
+
+    `first` (n,) is the H of the first look; the heights, in a column, stay those over its fits, too.
+    """
 
     columns: Floats
     direction1: Floats
     direction2: Floats
+    first: Floats
 
     @classmethod
     def of(cls, totals: Floats, normals: Floats) -> Values:
         """The means of weighted totals."""
         n = len(totals)
-        found = cls(np.empty((n, 6)), np.empty((n, 3)), np.empty((n, 3)))
+        found = np.empty((n, 6)), np.empty((n, 3)), np.empty((n, 3))
         patches.mean_values(totals, normals, *found)
-        return found
+        return cls(*found, found[0][:, 1].copy())
 
     def put(self, rows: NDArray[np.intp], other: Values) -> None:
-        """Take over some rows, in place."""
-        for mine, others in zip(self, other, strict=True):
+        """Take over some rows, in place, from a later look."""
+        for mine, others in zip(self[:3], other[:3], strict=True):
+            kept = self.columns[rows, HEIGHT]
             mine[rows] = others[rows]
+            self.columns[rows, HEIGHT] = kept
 
 
 def missed(sheet: balls.Sheet, heights: Floats, noise: Floats) -> Bools:
@@ -83,18 +91,20 @@ def look_again(
     """
     if len(ladder.reaches) == 1:
         return
-    least = np.where(at_edge, LEAST + BESIDE_EDGE, LEAST)
+    least, heights = np.where(at_edge, LEAST + BESIDE_EDGE, LEAST), found.columns[:, HEIGHT].copy()
     for _ in range(LOOKS):
         with np.errstate(invalid="ignore"):
             steps = np.searchsorted(ladder.reaches, found.columns[:, 3] / (sheet.spacing * ladder.factors) * (1 + 1e-9))
         index = np.clip(steps - 1, 0, len(ladder.reaches) - 1)
-        is_missed = missed(sheet, found.columns[:, 4], noise) & (index > least)
+        is_missed = missed(sheet, heights, noise) & (index > least)
         if not is_missed.any():
             return
         rows = np.flatnonzero(rings_around(sheet, is_missed, AROUND))
         high = _least_around(sheet, np.where(is_missed, index - STEPS, len(ladder.reaches)))
         high = np.maximum(high, least)[rows].astype(np.int32)
-        found.put(rows, _of_smaller(sheet, ladder, rows, high, turns, noise, at_edge, quality, tasks))
+        again = _of_smaller(sheet, ladder, rows, high, turns, noise, at_edge, quality, tasks)
+        found.put(rows, again)
+        heights[rows] = again.columns[rows, HEIGHT]
 
 
 def _least_around(sheet: balls.Sheet, values: NDArray[np.intp]) -> NDArray[np.intp]:

@@ -138,15 +138,16 @@ def sectional(
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
     at_edge = rings_around(mesh.topology, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
     samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks, _sizes_of_components(mesh)[index])
-    out, direction1, direction2, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
+    values, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
+    out, direction1, direction2, first = values
     out[:, 0] *= shrinkage(samples, out)
     columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
     gaussian, mean, risk, reach, height, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
-    noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
+    noise, spacing, first = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing, first))
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     principal = mean + half, mean - half, direction1, direction2
-    estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height)
+    estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height, first)
     estimate.put(on_edge, ends)
     estimate.put(alone, beside)
     left_out = np.zeros(mesh.n_vertices, np.bool_)
@@ -161,8 +162,8 @@ def sectional(
 
 def blended_patches(
     sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, at_edge: NDArray[np.bool_], tasks: Tasks
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """What `patches.mean_values` tells at the vertices of the sheet, and the variance of the noise."""
+) -> tuple[Values, Floats]:
+    """What patches tell at the vertices of the sheet, and the variance of the noise."""
     between = scales(samples, sheet, at_edge)
     low, high, top, noise = windows(samples, between)
     noise = in_half_octaves(noise, sheet.spacing**2)
@@ -204,7 +205,7 @@ def blended_patches(
     values = Values.of(totals, sheet.normals)
     del totals
     look_again(sheet, ladder, values, samples.turns, noise, at_edge, (quality.least, quality.power), tasks)
-    return *values, noise
+    return values, noise
 
 
 def in_half_octaves(variances: Floats, unit: Floats) -> Floats:
