@@ -26,7 +26,7 @@ HEIGHT = 4
 SURE, SMALL = 8.0, 0.1
 """Mean height of a vertex and its neighbours over the fits, in its standard errors and in spacings, from which on it is
 no noise: that of the least noisy fit may be too low by half, and what is smaller bends no ball of a few spacings."""
-MOST = 6.0
+MOST = 10.0
 """Height of a single vertex, over the noise, that counts at most: a few beside the surface are no bump."""
 LOOKS, STEPS = 5, 2
 """Most repetitions, and radii that balls are smaller each time: by a third."""
@@ -79,9 +79,11 @@ def missed(sheet: balls.Sheet, heights: Floats, noise: Floats) -> Bools:
 
 def look_again(
     sheet: balls.Sheet, ladder: Ladder, found: Values, turns: Ints, noise: Floats, at_edge: Bools,
-    quality: tuple[float, float], tasks: Tasks,
+    quality: tuple[float, float, float], tasks: Tasks,
 ) -> None:  # fmt: skip
     """Replace, in place, the values where fits pass by the vertices by those of smaller balls, until none do.
+
+    `quality` is the share, the least radius and the power of `sectional.Quality`.
 
     Notes
     -----
@@ -103,6 +105,7 @@ def look_again(
         high = _least_around(sheet, np.where(is_missed, index - STEPS, len(ladder.reaches)))
         high = np.maximum(high, least)[rows].astype(np.int32)
         again = _of_smaller(sheet, ladder, rows, high, turns, noise, at_edge, quality, tasks)
+        rows = rows[np.isfinite(again.columns[rows, 0])]
         found.put(rows, again)
         heights[rows] = again.columns[rows, HEIGHT]
 
@@ -117,13 +120,13 @@ def _least_around(sheet: balls.Sheet, values: NDArray[np.intp]) -> NDArray[np.in
 
 def _of_smaller(
     sheet: balls.Sheet, ladder: Ladder, rows: NDArray[np.intp], high: Ints, turns: Ints, noise: Floats,
-    at_edge: Bools, quality: tuple[float, float], tasks: Tasks,
+    at_edge: Bools, quality: tuple[float, float, float], tasks: Tasks,
 ) -> Values:  # fmt: skip
     """Values of patches about some vertices, over balls of no more than a radius of each."""
-    share, power = quality
+    share, smallest, power = quality
     highest, core = np.zeros(len(noise), np.int32), np.zeros(len(noise))
     highest[rows] = high
-    core[rows] = np.maximum(share, 0.2 * ladder.reaches[np.maximum(high - NARROW, 0)])
+    core[rows] = np.maximum(smallest, share * ladder.reaches[np.maximum(high - NARROW, 0)])
     centres = cover(sheet, _among(turns, rows), core)
     high, core = highest[centres], core[centres]
     order, one = np.full(len(centres), FIRST, np.int32), np.ones(len(centres))

@@ -204,7 +204,8 @@ def blended_patches(
     add_patches(fitting, CORE * core, expected, weights, totals, tasks, 0.2)
     values = Values.of(totals, sheet.normals)
     del totals
-    look_again(sheet, ladder, values, samples.turns, noise, at_edge, (quality.least, quality.power), tasks)
+    density = quality.share, quality.least, quality.power
+    look_again(sheet, ladder, values, samples.turns, noise, at_edge, density, tasks)
     return values, noise
 
 
