@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.angle_defect import longest_edges
 from rinow.curvature.arcs import without_chords
+from rinow.curvature.disagreement import proven_bias
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.length_noise import LengthNoise
@@ -41,10 +42,8 @@ FLOOR = 0.1
 WITHIN = 3.0
 """Differences of a value from its reference over the root of its squared bias, at most, so that two spreads hold them.
 S is not symmetric, and waves may grow somewhere: they do so in these differences as well."""
-PROOF, MOST, PROVING_PASSES, PROVED = 3.0, 9.0, 5, 8
-"""Squared difference from the best of smaller scales over the one expected from which on, in the mean over so many
-rings, it proves a bias; each vertex counts no more than MOST, lest one with a wild value speaks for all around.  Scales
-below PROVED hold too little of the surface to hold a bump whole, and half of them is no scale to believe."""
+PROVED = 8
+"""Least scale that is held against the best of the smaller ones: below, none holds enough to miss a bump."""
 LARGE, FAR, PATCH = 20_000, 20, 200
 """Vertices from which their order matters, the share of all of them that numbers of neighbours then may be apart, and
 vertices of a patch."""
@@ -233,23 +232,11 @@ def _difference(a: Floats, b: Floats) -> Floats:
 
 
 def _beside(best: IntrinsicCurvature, candidate: Candidate, flow: CurvatureFlow) -> Candidate:
-    """The candidate, with the squared bias that what it differs by from the best of all smaller ones proves.
-
-    The error of chords, which no variance tells, may be that of the smaller one, or change over it.
-    """
+    """The candidate, with the bias that what it differs by from the best of smaller ones proves, beyond chords."""
     values, variance, bias, radius = candidate
     chords = np.square(UNSEEN * np.square(best.gaussian) * np.square(flow.spacing))
     expected = CALIBRATION**2 * (best.variance + best.squared_bias) + variance + chords
-    squares = np.square(values - best.gaussian)
-    with np.errstate(invalid="ignore"):
-        ratios = np.fmin(squares / expected, MOST)
-    if not np.isfinite(ratios).any():
-        return candidate
-    columns = np.column_stack([ratios, squares - expected])
-    columns[~np.isfinite(ratios)] = np.nan
-    ratio, excess = flow.means(columns, PROVING_PASSES).T
-    with np.errstate(invalid="ignore"):
-        return values, variance, np.where(ratio > PROOF, np.fmax(bias, excess), bias), radius
+    return values, variance, np.fmax(bias, proven_bias(values - best.gaussian, expected, flow)), radius
 
 
 def _improve(best: IntrinsicCurvature, candidate: Candidate, where: NDArray[np.bool_] | None) -> bool:
