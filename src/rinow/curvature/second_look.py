@@ -41,13 +41,15 @@ FIRST, INNER, OUTER, NARROW = 4, 6, 4, 5
 class Values(NamedTuple):
     """At the vertices of a sheet what `patches.mean_values` tells: its columns, and principal directions.
 
-    `first` (n,) is the H of the first look; the heights, in a column, stay those over its fits, too.
+    `first` (n,) is the H of the first look, and `again` (n,) tells where there was another one; the heights, in a
+    column, stay those over the fits of the first.
     """
 
     columns: Floats
     direction1: Floats
     direction2: Floats
     first: Floats
+    again: Bools
 
     @classmethod
     def of(cls, totals: Floats, normals: Floats) -> Values:
@@ -55,7 +57,7 @@ class Values(NamedTuple):
         n = len(totals)
         found = np.empty((n, 6)), np.empty((n, 3)), np.empty((n, 3))
         patches.mean_values(totals, normals, *found)
-        return cls(*found, found[0][:, 1].copy())
+        return cls(*found, found[0][:, 1].copy(), np.zeros(n, np.bool_))
 
     def put(self, rows: NDArray[np.intp], other: Values) -> None:
         """Take over some rows, in place, from a later look."""
@@ -63,6 +65,7 @@ class Values(NamedTuple):
             kept = self.columns[rows, HEIGHT]
             mine[rows] = others[rows]
             self.columns[rows, HEIGHT] = kept
+        self.again[rows] = True
 
 
 def missed(sheet: balls.Sheet, heights: Floats, noise: Floats) -> Bools:

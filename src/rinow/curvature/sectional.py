@@ -139,8 +139,8 @@ def sectional(
     at_edge = rings_around(mesh.topology, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
     samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks, _sizes_of_components(mesh)[index])
     values, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
-    out, direction1, direction2, first = values
-    out[:, 0] *= shrinkage(samples, out)
+    out, direction1, direction2, first, _ = values
+    out[:, 0] *= shrinkage(samples, values)
     columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
     gaussian, mean, risk, reach, height, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
@@ -237,15 +237,16 @@ def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints
     )
 
 
-def shrinkage(samples: Samples, out: Floats) -> Floats:
+def shrinkage(samples: Samples, values: Values) -> Floats:
     """Positive-part shrinkage of K towards 0, from its mean square and mean risk around the samples.
 
-    A guess of what nothing shows is no reason to draw K anywhere.
+    A guess of what nothing shows is no reason to draw K anywhere, nor is a plane around a bump that was missed first.
     """
-    factors, shrinkage = np.empty(len(samples.noise)), np.empty(len(out))
+    out, factors, shrinkage = values.columns, np.empty(len(samples.noise)), np.empty(len(values.columns))
     risks.disc_shrinkage(samples.member_starts, samples.members, out[:, 0], out[:, 2], factors)
     factors[~samples.is_seen] = 1.0
     risks.vertex_means(samples.starts, samples.near, factors, shrinkage)
+    shrinkage[values.again] = 1.0
     return shrinkage
 
 
