@@ -41,8 +41,8 @@ FIRST, INNER, OUTER, NARROW = 4, 6, 4, 5
 class Values(NamedTuple):
     """At the vertices of a sheet what `patches.mean_values` tells: its columns, and principal directions.
 
-    `first` (n,) is the H of the first look, and `again` (n,) tells where there was another one; the heights, in a
-    column, stay those over the fits of the first.
+    `first` (n,) is the H of the first look, and `again` (n,) tells where, away from boundaries, there was another one;
+    the heights, in a column, stay those over the fits of the first.
     """
 
     columns: Floats
@@ -65,7 +65,6 @@ class Values(NamedTuple):
             kept = self.columns[rows, HEIGHT]
             mine[rows] = others[rows]
             self.columns[rows, HEIGHT] = kept
-        self.again[rows] = True
 
 
 def missed(sheet: balls.Sheet, heights: Floats, noise: Floats) -> Bools:
@@ -110,6 +109,7 @@ def look_again(
         again = _of_smaller(sheet, ladder, rows, high, turns, noise, at_edge, quality, tasks)
         rows = rows[np.isfinite(again.columns[rows, 0])]
         found.put(rows, again)
+        found.again[rows] = ~at_edge[rows]
         heights[rows] = again.columns[rows, HEIGHT]
 
 
