@@ -7,6 +7,7 @@ import shapes
 from rinow import TriangleMesh
 from rinow.curvature import intrinsic
 from rinow.curvature import waves as waves_module
+from rinow.curvature.disagreement import proven_bias
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.intrinsic import CALIBRATION, intrinsic_curvature
 from rinow.curvature.waves import LADDER, LEAST, REACH, Waves, passed, window
@@ -99,3 +100,17 @@ def test_no_squared_bias_is_so_small_that_two_spreads_do_not_hold_the_difference
 
 def test_every_boundary_vertex_beside_the_interior_has_a_value():
     assert np.isfinite(intrinsic_curvature(long_grid(24, 5)).gaussian).all()
+
+
+def test_a_bias_is_proved_by_most_vertices_around_and_by_no_wild_one():
+    flow = CurvatureFlow(TriangleMesh(NOISY_TORUS.vertices, NOISY_TORUS.faces))
+    n, rng = len(NOISY_TORUS.vertices), np.random.default_rng(3)
+    noise = rng.normal(size=n)
+    assert np.isnan(proven_bias(noise, np.ones(n), flow)).all()
+    wild = noise.copy()
+    wild[0] = 1e6
+    assert np.isnan(proven_bias(wild, np.ones(n), flow)).all()
+    away = np.linalg.norm(NOISY_TORUS.vertices - NOISY_TORUS.vertices[0], axis=1)
+    found = proven_bias(noise + 10.0 * (away < 0.6), np.ones(n), flow)
+    assert np.all(np.abs(found[away < 0.1] - 100.0) < 30.0)  # the square of 10, averaged over some rings
+    assert np.isnan(found[away > 1.5]).all()

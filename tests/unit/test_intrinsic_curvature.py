@@ -107,6 +107,16 @@ def test_spread_covers_the_error_under_noise():
         assert c.radius.min() > 0
 
 
+@pytest.mark.parametrize("noise", [0.005, 0.02])
+def test_a_bump_is_not_flat_since_large_balls_agree_on_that(noise):
+    """Its total curvature is 0, and so are all averages over balls that hold it whole."""
+    shape = shapes.noisy(shapes.bump_on_plane(), noise)
+    c = curvature_by_lengths(shape)
+    on_bump = np.linalg.norm(shape.vertices[:, :2], axis=1) < 0.6
+    assert relative_error(c.gaussian[on_bump], shape.gaussian[on_bump]) < 0.5
+    assert np.mean((np.abs(c.gaussian - shape.gaussian) < 2 * c.spread)[on_bump]) > 0.9
+
+
 @pytest.mark.parametrize("n", [1000, 4000])
 @pytest.mark.parametrize("noise", [0, 0.01, 0.05])
 def test_spread_covers_the_error_on_spheres(n, noise):

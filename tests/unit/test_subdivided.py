@@ -5,6 +5,7 @@ import pytest
 
 import shapes
 from rinow import TriangleMesh, VertexStatus, surface_curvature
+from rinow.curvature.redundant import redundant_vertices
 from rinow.curvature.subdivided import coarser
 
 ELLIPSOID = shapes.irregular_ellipsoid(500)
@@ -177,3 +178,21 @@ def test_heights_in_steps_keep_nearly_all_vertices():
     V, F = grid(41, 41, lambda u, v: (u, v, np.round(20 * np.sin(5 * u) * np.cos(4 * v)) / 200))
     found = coarser(TriangleMesh(V, F))
     assert found is None or len(found.vertices) < 0.005 * len(V)
+
+
+@pytest.mark.parametrize(
+    "height",
+    [
+        lambda u, v: ((u - 0.5) ** 3 - 3 * (u - 0.5) * (v - 0.5) ** 2) * 2,
+        lambda u, v: 0.1 * np.sin(TURN * u) * np.cos(3 * v),
+    ],
+)
+def test_points_of_inflection_on_symmetric_grids_are_on_the_surface(height):
+    """Half the vertices have four neighbours; on lines of inflection they are amid two of these, to the last digit."""
+    n = 21
+    V, _ = grid(n, n, lambda u, v: (u, v, height(u, v)))
+    i, j = (k.ravel() for k in np.indices((n - 1, n - 1)))
+    a, b, c, d = i * n + j, (i + 1) * n + j, (i + 1) * n + j + 1, i * n + j + 1
+    turn = (i + j) % 2 == 0
+    one, other = np.where(turn, [a, b, d], [a, b, c]).T, np.where(turn, [b, c, d], [a, c, d]).T
+    assert not redundant_vertices(TriangleMesh(V, np.concatenate([one, other])))

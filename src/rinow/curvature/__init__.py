@@ -12,9 +12,9 @@ Surfaces
     vertices and `outliers`, by `ear_clipping`), in `units` that are safe; each method makes an `estimate`.
 
     - Edge lengths alone: `angle_defect`, `wald`, `geodesic_stars`; `intrinsic` with `flow`, `waves`, `arcs`,
-      `length_noise`, `unseen`.
+      `length_noise`, `disagreement`, `unseen`.
     - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale` with `charts` and `lack_of_fit`, `searches`,
-      `patch_tasks`, `ends`.
+      `second_look`, `patch_tasks`, `ends`.
     - Both: `lifted`; `auto` with `unresolved`.
     - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`, `exact_facets`,
       `flat`, `hull_slivers`, `strays`; `rounding` of positions.

@@ -61,14 +61,15 @@ def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
     samples = sample(sheet, ladder, quality.selects, tasks)
     at_edge = rings_around(sheet, cloud.at_border, EDGE_RINGS)
-    out, direction1, direction2, noise = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)
-    out[:, 0] *= shrinkage(samples, out)
+    values, noise = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)
+    out, direction1, direction2, first, _ = values
+    out[:, 0] *= shrinkage(samples, values)
     gaussian, mean, risk, reach, height = out[:, :5].T.copy()
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     # With noise a tenth of the border is not seen, but its neighbours are.
     spread = standard_errors(out, quality, rings_around(sheet, cloud.at_border, 1))
     principal = mean + half, mean - half, direction1, direction2
-    fit = Estimate(gaussian, spread, reach, mean, *principal, np.sqrt(noise), sheet.spacing, risk, height)
+    fit = Estimate(gaussian, spread, reach, mean, *principal, np.sqrt(noise), sheet.spacing, risk, height, first)
     mesh = TriangleMesh(sheet.vertices, cloud.faces) if len(cloud.faces) else None
     if mesh is not None:
         repair_ends(mesh, fit, radius is None)

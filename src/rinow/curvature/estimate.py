@@ -30,8 +30,9 @@ class Estimate:
     risk : (n_vertices,) ndarray of float or None
         Squared error of the Gaussian curvature expected by the choice of scale and order, by which estimates are
         weighted.  The spread holds more: what that choice does not see.
-    height : (n_vertices,) ndarray of float or None
-        Heights of the vertices over the surfaces fitted.
+    height, first_mean : (n_vertices,) ndarray of float or None
+        Heights of the vertices over the surfaces fitted first, and the mean curvatures of these, whether or not smaller
+        ones took their place.
     left_out : (n_vertices,) ndarray of bool or None
         The vertex took no part and has the values of a neighbour.
     """
@@ -48,6 +49,7 @@ class Estimate:
     spacing: Floats | None = None
     risk: Floats | None = None
     height: Floats | None = None
+    first_mean: Floats | None = None
     left_out: NDArray[np.bool_] | None = None
 
     def with_gaussian(self, gaussian: Floats, spread: Floats) -> Estimate:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.angle_defect import longest_edges
 from rinow.curvature.arcs import without_chords
+from rinow.curvature.disagreement import proven_bias
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.length_noise import LengthNoise
@@ -41,6 +42,8 @@ FLOOR = 0.1
 WITHIN = 3.0
 """Differences of a value from its reference over the root of its squared bias, at most, so that two spreads hold them.
 S is not symmetric, and waves may grow somewhere: they do so in these differences as well."""
+PROVED = 8
+"""Least scale that is held against the best of the smaller ones: below, none holds enough to miss a bump."""
 LARGE, FAR, PATCH = 20_000, 20, 200
 """Vertices from which their order matters, the share of all of them that numbers of neighbours then may be apart, and
 vertices of a patch."""
@@ -144,7 +147,10 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
     for m in LADDER[: bisect_right(LADDER, most_steps)]:
         here = None if wanted is None else wanted == m
         if here is None or here.any():
-            improved = [_improve(best, candidate, here) for candidate in _candidates(m, flow, noise, waves, tau2)]
+            candidates = _candidates(m, flow, noise, waves, tau2)
+            if m >= PROVED:
+                candidates = (_beside(best, candidate, flow) for candidate in candidates)
+            improved = [_improve(best, candidate, here) for candidate in candidates]
             idle = 0 if any(improved) else idle + 1
         if idle == IDLE and here is None:
             break
@@ -223,6 +229,14 @@ def _difference(a: Floats, b: Floats) -> Floats:
     """Coefficients of a minus those of b."""
     n = max(len(a), len(b))
     return np.pad(a, (0, n - len(a))) - np.pad(b, (0, n - len(b)))
+
+
+def _beside(best: IntrinsicCurvature, candidate: Candidate, flow: CurvatureFlow) -> Candidate:
+    """The candidate, with the bias that what it differs by from the best of smaller ones proves, beyond chords."""
+    values, variance, bias, radius = candidate
+    chords = np.square(UNSEEN * np.square(best.gaussian) * np.square(flow.spacing))
+    expected = CALIBRATION**2 * (best.variance + best.squared_bias) + variance + chords
+    return values, variance, np.fmax(bias, proven_bias(values - best.gaussian, expected, flow)), radius
 
 
 def _improve(best: IntrinsicCurvature, candidate: Candidate, where: NDArray[np.bool_] | None) -> bool:

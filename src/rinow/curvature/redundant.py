@@ -22,6 +22,9 @@ Where a surface bends to both sides that of others is 0 as well by chance, but n
 CREASED = 0.5
 """Angle in radians between two faces from which on they meet at a crease: rims of cylinders are full of such vertices,
 too, where all that is known of the cylinder lies."""
+EVEN = 1e-3
+"""Share of the tilts of the normals at the ends of an edge against it that differ where the surface has its point of
+inflection in the middle, as symmetric surfaces on symmetric grids do: there a vertex on the chord is on the surface."""
 OPPOSITE = 1e-4
 """Angle in radians by which an edge may miss the continuation of another one."""
 
@@ -101,7 +104,7 @@ def _on_edges(mesh: TriangleMesh, vertices: Indices, around: Indices) -> list[Am
         if len(rows):
             rows = rows[_is_curved(mesh, around[rows])]
         places = np.stack([vertices[rows], around[rows, i], around[rows, j]], axis=1).tolist()
-        found += [AmidEdge(*place) for place in places if not _goes_on(mesh, *place)]
+        found += [AmidEdge(*place) for place in places if not (_goes_on(mesh, *place) or _is_inflection(mesh, *place))]
     return list({place.vertex: place for place in found}.values())
 
 
@@ -110,6 +113,15 @@ def _goes_on(mesh: TriangleMesh, vertex: int, a: int, b: int) -> bool:
     ends = np.array([a, b])
     goes_on = mesh.topology.vertex_is_boundary[ends] | has_continuation(mesh, ends, np.full(2, vertex))
     return bool(goes_on.all())
+
+
+def _is_inflection(mesh: TriangleMesh, vertex: int, a: int, b: int) -> bool:
+    """The vertex is in the middle of its edge, and the surface bends as much to one side at a as to the other at b."""
+    along = mesh.vertices[b] - mesh.vertices[a]
+    middle = np.linalg.norm(mesh.vertices[[a, b]].mean(axis=0) - mesh.vertices[vertex])
+    first, second = mesh.vertex_normals[[a, b]] @ along
+    is_even = 0.0 < abs(first) + abs(second) and abs(second - first) <= EVEN * (abs(first) + abs(second))
+    return bool(is_even and middle <= EVEN * np.linalg.norm(along))
 
 
 def has_continuation(mesh: TriangleMesh, ends: Indices, others: Indices) -> NDArray[np.bool_]:

@@ -18,6 +18,7 @@ from rinow.curvature.flat import flat_vertices, flatten
 from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Ladder, Samples, chosen_at, curvedness_of, sample, scales, windows
 from rinow.curvature.searches import Centres, Found, blended, search_both
+from rinow.curvature.second_look import Values, look_again
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
@@ -137,15 +138,16 @@ def sectional(
     ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
     at_edge = rings_around(mesh.topology, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
     samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks, _sizes_of_components(mesh)[index])
-    out, direction1, direction2, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
-    out[:, 0] *= shrinkage(samples, out)
+    values, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
+    out, direction1, direction2, first, _ = values
+    out[:, 0] *= shrinkage(samples, values)
     columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
     gaussian, mean, risk, reach, height, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
     direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
-    noise, spacing = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing))
+    noise, spacing, first = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing, first))
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     principal = mean + half, mean - half, direction1, direction2
-    estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height)
+    estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height, first)
     estimate.put(on_edge, ends)
     estimate.put(alone, beside)
     left_out = np.zeros(mesh.n_vertices, np.bool_)
@@ -160,8 +162,8 @@ def sectional(
 
 def blended_patches(
     sheet: balls.Sheet, ladder: Ladder, quality: Quality, samples: Samples, at_edge: NDArray[np.bool_], tasks: Tasks
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """What `patches.mean_values` tells at the vertices of the sheet, and the variance of the noise."""
+) -> tuple[Values, Floats]:
+    """What patches tell at the vertices of the sheet, and the variance of the noise."""
     between = scales(samples, sheet, at_edge)
     low, high, top, noise = windows(samples, between)
     noise = in_half_octaves(noise, sheet.spacing**2)
@@ -200,9 +202,11 @@ def blended_patches(
     expected = in_half_octaves(choice.risk, sheet.spacing[centres] ** -4)
     weights = expected**-quality.power * in_half_octaves(least, np.ones(1)) ** (EDGE_POWER - quality.power)
     add_patches(fitting, CORE * core, expected, weights, totals, tasks, 0.2)
-    out, direction1, direction2 = np.empty((len(totals), 6)), np.empty((len(totals), 3)), np.empty((len(totals), 3))
-    patches.mean_values(totals, sheet.normals, out, direction1, direction2)
-    return out, direction1, direction2, noise
+    values = Values.of(totals, sheet.normals)
+    del totals
+    density = quality.share, quality.least, quality.power
+    look_again(sheet, ladder, values, samples.turns, noise, at_edge, density, tasks)
+    return values, noise
 
 
 def in_half_octaves(variances: Floats, unit: Floats) -> Floats:
@@ -233,15 +237,16 @@ def _widened(low: Ints, high: Ints, top: Ints, n_radii: int) -> tuple[Ints, Ints
     )
 
 
-def shrinkage(samples: Samples, out: Floats) -> Floats:
+def shrinkage(samples: Samples, values: Values) -> Floats:
     """Positive-part shrinkage of K towards 0, from its mean square and mean risk around the samples.
 
-    A guess of what nothing shows is no reason to draw K anywhere.
+    A guess of what nothing shows is no reason to draw K anywhere, nor is a plane around a bump that was missed first.
     """
-    factors, shrinkage = np.empty(len(samples.noise)), np.empty(len(out))
+    out, factors, shrinkage = values.columns, np.empty(len(samples.noise)), np.empty(len(values.columns))
     risks.disc_shrinkage(samples.member_starts, samples.members, out[:, 0], out[:, 2], factors)
     factors[~samples.is_seen] = 1.0
     risks.vertex_means(samples.starts, samples.near, factors, shrinkage)
+    shrinkage[values.again] = 1.0
     return shrinkage
 
 

@@ -51,16 +51,17 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     around it.  So where the difference of two estimates is positively correlated between neighbours it is detail that
     one of them has missed.
 
-    - Heights of the vertices over the fits.  Independent noise leaves them uncorrelated on every triangulation, and
-      what is small beside the spacing, and not large beside the noise, is noise too, correlated or not.
-    - Quartics of three rings against fits: with detail in between, rings are taken.
+    - Heights of the vertices over the first fits, before smaller balls took their place.  Independent noise leaves them
+      uncorrelated on every triangulation, and what is small beside the spacing, and not large beside the noise, is
+      noise too, correlated or not.
+    - Quartics of three rings against fits, the first and those in their place: with detail in between, rings are taken.
     - Single rings against cubics of three rings, which they are averaged with as far as those miss detail.
     - Quartics against cubics.  They come nearest to the truth, if there is detail in between, and if they in turn leave
       no detail to single rings; if they do, then waves are too short for any polynomial.
     """
     if estimate.mean is None or estimate.height is None or estimate.spacing is None or estimate.noise is None:
         return estimate
-    spacing = estimate.spacing
+    spacing, first = estimate.spacing, estimate.mean if estimate.first_mean is None else estimate.first_mean
     height = np.clip(estimate.height / spacing, -1.0, 1.0)
     if not np.fmax.reduce(np.abs(height), initial=0.0) > SMALL * OF_HEIGHTS[0] ** 0.5:  # no correlation exceeds that
         return estimate
@@ -72,9 +73,9 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
         return estimate
     star, jets = _two_rings(mesh), np.empty((mesh.n_vertices, 2, 2))
     ring_jets.ring_jets(stencil_surface(mesh), N_BLOCKS, jets)
-    share = np.minimum(
-        share, _common_share(mesh, _without_outliers(mesh, (jets[:, 1, 1] - estimate.mean) * spacing), OF_FITS)
-    )
+    for mean in (first, estimate.mean):
+        missed = _without_outliers(mesh, (jets[:, 1, 1] - mean) * spacing)
+        share = np.minimum(share, _common_share(mesh, missed, OF_FITS))
     share[~np.isfinite(star.gaussian)] = 0.0
     if not share.any():
         return estimate

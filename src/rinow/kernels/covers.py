@@ -65,15 +65,15 @@ def cover(candidates, radii, sheet, centres):
 
     A negative number ~v is that of a vertex v tied with the one before.
     """
-    n = len(sheet.vertices)
+    n, last = len(sheet.vertices), len(candidates) - 1
     marks, members, is_covered = np.zeros(n, np.int32), np.empty(n + 1, np.int32), np.zeros(n, np.bool_)
     surface, count, first = (sheet.vertices, sheet.offsets, sheet.neighbours), 0, 0
-    for i in range(n):
+    for i in range(len(candidates)):
         v = max(candidates[i], ~candidates[i])
         if not is_covered[v]:
             centres[count] = v
             count += 1
-        if i + 1 == n or candidates[i + 1] >= 0:
+        if i == last or candidates[i + 1] >= 0:
             for k in range(first, count):
                 for m in range(disc(centres[k], radii[centres[k]], k + 1, *surface, marks, members)):
                     is_covered[members[m]] = True
