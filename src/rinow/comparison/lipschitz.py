@@ -41,7 +41,7 @@ class LipschitzDistance(OneLine):
     lower, upper : float
         The distance lies between them; a number without unit, inf for spaces of unequal size.
     exact : bool
-        Whether the two are equal.
+        Whether the two are equal, up to 1e-12.
     bijection : (n,) ndarray of int
         Image of each point of X; `upper` is the logarithm of the larger dilatation of this map and its inverse.  Empty
         for spaces of unequal size.
