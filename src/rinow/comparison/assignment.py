@@ -21,9 +21,10 @@ def assigned(costs: Floats, clock: Clock) -> Indices:
     As `scipy.optimize.linear_sum_assignment`, which cannot be stopped and may take minutes for some thousand rows.
     """
     n = len(costs)
-    columns, rows, scratch = np.empty(n, np.int64), np.empty(n, np.int64), np.empty((3, n))
+    columns, rows, before, remaining = (np.empty(n, np.int64) for _ in range(4))
+    prices, other_prices, shortest = (np.empty(n) for _ in range(3))
     state = assignment.Assignment(
-        np.ascontiguousarray(costs), columns, rows, *scratch, np.empty(n, np.int64), np.empty(n, np.int64)
+        np.ascontiguousarray(costs), columns, rows, prices, other_prices, shortest, before, remaining
     )
     assignment.begin(state)
     alone = np.flatnonzero(columns == assignment.FREE)
