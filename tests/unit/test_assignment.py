@@ -5,11 +5,17 @@ import math
 import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
+from scipy.spatial.distance import pdist, squareform
 
 from clocks import Looks
+from rinow import lipschitz_distance
 from rinow.comparison import engine as engine_module
+from rinow.comparison import steps
+from rinow.comparison.affine_bijections import offer_affine_bijections
 from rinow.comparison.assignment import assigned
 from rinow.comparison.clock import Clock
+from rinow.comparison.engine import BIJECTION, worst_of
+from rinow.comparison.interval import Interval
 
 RNG = np.random.default_rng(91)
 COSTS = {
@@ -42,3 +48,20 @@ def test_when_the_time_is_over_the_map_is_a_bijection_all_the_same(monkeypatch):
         totals.append(costs[np.arange(50), columns].sum())
     assert totals[-1] <= min(totals)
     assert totals[-1] < totals[0]
+
+
+@pytest.mark.parametrize("factors", [(1.0, 0.75, 0.5), (1.2, 1.0, 0.8), (0.9, 0.9, 0.9)])
+def test_affine_images_of_shuffled_points_are_found(factors, monkeypatch):
+    rng = np.random.default_rng(92)
+    points = rng.normal(size=(300, 3)) * [3.0, 2.0, 1.0]
+    shuffled = rng.permutation(300)
+    X, Y = squareform(pdist(points)), squareform(pdist((points * factors)[shuffled]))
+    partners = np.stack([np.arange(300), np.argsort(shuffled)], axis=1)
+    interval = Interval(np.stack([np.arange(300)] * 2, axis=1), math.inf, lower=1.0)
+    offer_affine_bijections(X, Y, interval, Clock(math.inf))
+    assert interval.upper <= worst_of(BIJECTION, X, Y, partners)  # another one may be better still
+    over = Interval(partners[::-1], math.inf, lower=1.0)
+    offer_affine_bijections(X, Y, over, Clock(0.0))
+    assert over.upper == math.inf
+    monkeypatch.setattr(steps, "close", lambda *_: None)  # no search
+    assert lipschitz_distance(X, Y, time_limit=math.inf).upper == math.log(interval.upper)
