@@ -76,7 +76,7 @@ def lipschitz_distance(X: Any, Y: Any, *, time_limit: float = 60.0, verify: bool
     time_limit : float, default 60
         Seconds after which the search stops with the bounds reached so far; with 0 the bounds that cost no search.
         One step may overrun it by some tenths of a second.  Bijections of more than 1500 points are not searched: some
-        are found by assigning points whose distances from a few matched points agree, in some seconds each.
+        are found by assigning points at nearly the same place, or whose distances from a few matched points agree.
     verify : bool, default False
         Have the clause-learning solver write down its proof, and check it: that takes two or three times as long
         as finding it.  A refutation with a wrong proof is not used.
