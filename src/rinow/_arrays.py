@@ -26,6 +26,7 @@ __all__ = [
     "in_unit",
     "read_only",
     "rows_are_finite",
+    "rows_in_own_unit",
 ]
 
 Floats = NDArray[np.float64]
@@ -88,10 +89,19 @@ def in_safe_unit(lengths: Floats) -> tuple[Floats, int]:
     return (lengths, 0) if abs(exponent) <= tolerances.SAFE_EXPONENT else (np.ldexp(lengths, -exponent), exponent)
 
 
-def in_unit(values: Any, exponent: int) -> Any:
-    """The values times a power of two; inf where that is no number."""
+def rows_in_own_unit(rows: Floats) -> tuple[Floats, NDArray[np.intc]]:
+    """(n, m) lengths, each row divided by a power of two near its largest one, which is exact, and the exponents (n,).
+
+    Of lengths far below the largest one of their row digits may be lost.
+    """
+    exponents = np.frexp(np.max(np.abs(rows), axis=1, initial=0.0, where=np.isfinite(rows)))[1]
+    return np.ldexp(rows, -exponents[:, None]), exponents
+
+
+def in_unit(values: Any, exponent: int | NDArray[np.intc]) -> Any:
+    """The values times powers of two; inf where that is no number."""
     with np.errstate(over="ignore"):
-        return np.ldexp(values, exponent) if exponent else values
+        return np.ldexp(values, exponent) if np.any(exponent) else values
 
 
 def as_points(points: ArrayLike, name: str = "points", dimension: int | None = None) -> Floats:

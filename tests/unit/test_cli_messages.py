@@ -64,10 +64,13 @@ def test_wrong_usage_is_one_line(folder, capsys, words, sentence):
             "distances.csv holds the distances of 5 points, not their places; add --distances",
         ),
         ("info distances.csv", "distances.csv holds the distances of 5 points"),
+        ("curvature empty.csv", "empty.csv: the file is empty"),
+        ("net empty.csv --size 2", "empty.csv: the file is empty"),
         ("curvature ball.ply -o out.docx", "out.docx has no suffix of a known mesh format (.ply"),
     ],
 )
 def test_a_file_of_another_kind_is_told_by_name(folder, capsys, words, sentence):
+    (folder / "empty.csv").touch()
     assert main(words.split()) == 1
     assert capsys.readouterr().err.removeprefix("rinow: ").removeprefix("B: ").startswith(sentence)
 

@@ -10,7 +10,8 @@ Exact comparison
 Bounds without a search
     `bounds`, `persistence`, `subsets`.
 Upper bounds
-    `warm_start` with `alignment` and `relaxation`; `large_bijections` for the Lipschitz distance.
+    `warm_start` with `alignment` and `relaxation`; `affine_bijections` and `large_bijections` by `assignment` for the
+    Lipschitz distance.
 Meshes and large spaces
     `surfaces` with `surface_points`; `large` with `large_work` and `large_subsets`.  Beyond thousands of vertices
     `whole_meshes` and `whole_eccentricities` over the rows of an `edge_metric`.

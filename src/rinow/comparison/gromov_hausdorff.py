@@ -44,7 +44,7 @@ class GromovHausdorff(OneLine):
     lower, upper : float
         The distance lies between them, in the unit of length of the spaces.
     exact : bool
-        Whether the two are equal.
+        Whether the two are equal, up to a share of 1e-12.
     correspondence : (k, 2) ndarray of int
         Pairs (x, y) that cover both spaces; half their distortion is `upper`.  Where nets are compared they cover the
         nets, and `upper` is half their distortion plus the larger covering radius, or half the larger diameter if that

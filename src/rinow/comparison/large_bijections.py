@@ -10,10 +10,10 @@ from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from rinow.comparison import steps
 from rinow.comparison.alignment import align
+from rinow.comparison.assignment import assigned
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import BIJECTION, RELATION, Engine, worst_of
 from rinow.comparison.interval import Interval
@@ -30,9 +30,6 @@ ANCHORS = 100
 SEARCH = 0.2
 """Share of the time for this search."""
 
-ASSIGNED = 8e9
-"""Cubes of numbers of points that are assigned in a second: nothing is begun for which the time does not suffice."""
-
 CLOSE = 0.02
 """Share of the mean distance that is added to each one before its logarithm is taken: of short ones little is known."""
 
@@ -40,16 +37,13 @@ CLOSE = 0.02
 def offer_bijections(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
     """Offer bijections of two spaces of equally many points, as far as the time reaches."""
     X, Y = (D / (D.mean() or 1.0) for D in (DX, DY))
-    expected = len(X) ** 3 / ASSIGNED
     for anchors, images in _anchors(X, Y, interval, clock):
-        started = clock.elapsed
-        if clock.left < expected or interval.closed:
+        if clock.over or interval.closed:
             return
         features_x, features_y = np.log(X[:, anchors] + CLOSE), np.log(Y[:, images] + CLOSE)
         costs = (features_x**2).sum(axis=1)[:, None] + (features_y**2).sum(axis=1) - 2.0 * features_x @ features_y.T
-        pairs = np.stack(linear_sum_assignment(costs), axis=1)
+        pairs = np.stack([np.arange(len(X)), assigned(costs, clock)], axis=1)
         interval.offer(pairs, worst_of(BIJECTION, DX, DY, pairs))
-        expected = 2.0 * (clock.elapsed - started)
 
 
 def _anchors(X: Floats, Y: Floats, interval: Interval, clock: Clock) -> Iterator[tuple[Indices, Indices]]:

@@ -65,6 +65,15 @@ def close(engine: Engine, interval: Interval, clock: Clock) -> None:
     symmetries = isometries(engine.DX, listing), isometries(engine.DY, listing)
     if engine.kind == BIJECTION:
         symmetries = symmetries[0].exact(), symmetries[1].exact()
+    _close_with(engine, interval, clock, symmetries)
+    if not interval.closed and any(symmetric.error > 0.0 for symmetric in symmetries):  # it may have hidden the rest
+        _close_with(engine, interval, clock, (symmetries[0].exact(), symmetries[1].exact()))
+
+
+def _close_with(engine: Engine, interval: Interval, clock: Clock, symmetries: Symmetries) -> None:
+    """The exact steps with some isometries: until the interval is closed up to their error, or the time is over."""
+    if clock.over:
+        return
     homogeneous = any(symmetric.transitive for symmetric in symmetries)
     share, climbing, insistence = (0.05, 0.05, 0.05) if homogeneous else (0.2, CLIMB, INSISTENCE)
     if engine.kind == RELATION and engine.levels.few:

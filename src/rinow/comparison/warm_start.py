@@ -71,12 +71,20 @@ class TabuSearch(ABC):
         return int(self._tabu.counters[correspondence_tabu.MOVE])
 
     def run(self, n_moves: int, clock: Clock, target: float = 0.0) -> None:
-        """Make so many moves, unless the time is over or the target is met before."""
+        """Make so many moves, unless the time is over or the target is met before.
+
+        Less where single precision cannot tell the best relation from a better one.
+        """
         end = self.moves + n_moves
         block = min(self._stall, max(32, 40_000_000 // (self._tabu.table.size + 1000)))
         while self.moves < end and self.best > target and not clock.over:
+            before, gap = self.moves, self._gap
             if self._descend(min(block, end - self.moves)):
-                self._measure()
+                if not self._measure() and self.moves == before:  # the table shows no conflict, but there is one
+                    if gap >= GAP:
+                        return
+                    self._gap = GAP
+                    self._aim()
             elif self._tabu.counters[correspondence_tabu.TOTAL_STALL] >= self._stall:
                 self._perturb()
 
@@ -111,15 +119,18 @@ class TabuSearch(ABC):
         self._tabu.totals[1] = math.inf
         self._tabu.counters[correspondence_tabu.TOTAL_STALL] = 0
 
-    def _measure(self) -> None:
+    def _measure(self) -> bool:
+        """Measure the present relation, and set a new target; whether it is the best one."""
         pairs = self._current_pairs()
         value = worst_of(self.kind, self._DX, self._DY, pairs)
-        if value < self.best:
+        better = value < self.best
+        if better:
             self.best, self.pairs = value, pairs
             self._gap = min(LARGEST_GAP, max(GAP, 2.0 * self._gap))
         else:
             self._gap *= 0.7
         self._aim()
+        return better
 
     def _perturb(self) -> None:
         """Return to the maps nearest to the target, change up to 5 % of the images, and aim less high."""

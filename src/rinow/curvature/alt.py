@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow._arrays import as_indices
-from rinow.curvature.polyline import Polyline, as_polyline, root
+from rinow.curvature.polyline import Polyline, as_polyline
 
 __all__ = ["alt_curvature", "alt_of_polyline"]
 
@@ -102,7 +102,7 @@ def alt_of_polyline(polyline: Polyline, windows: Indices, at: Indices) -> Floats
     q, r = np.triu_indices(n_others, 1)
     centre = np.broadcast_to(at[:, None], (len(at), len(q)))
     squares = polyline.menger_squares(np.stack([others[:, q], centre, others[:, r]], axis=-1))
-    return root(_value_at_zero(positions[:, q], positions[:, r], squares))
+    return polyline.roots(_value_at_zero(positions[:, q], positions[:, r], squares))
 
 
 def _value_at_zero(x: Floats, y: Floats, values: Floats) -> Floats:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow.curvature.alt import alt_of_polyline
-from rinow.curvature.polyline import Polyline, as_polyline, root
+from rinow.curvature.polyline import Polyline, as_polyline
 from rinow.errors import InvalidInputError
 from rinow.kernels import polylines
 
@@ -128,11 +128,11 @@ def _menger(polyline: Polyline, windows: NDArray[np.intp], at: NDArray[np.intp])
     """Curvature of the ends of each window and its point, or the point next to it if it is an end."""
     place = np.argmax(windows == at[:, None], axis=1)
     middle = windows[at, np.clip(place, 1, windows.shape[1] - 2)]
-    return root(polyline.menger_squares(np.stack([windows[:, 0], middle, windows[:, -1]], axis=-1)))
+    return polyline.roots(polyline.menger_squares(np.stack([windows[:, 0], middle, windows[:, -1]], axis=-1)))
 
 
 def _haantjes(polyline: Polyline, windows: NDArray[np.intp]) -> NDArray[np.float64]:
     """Curvature of the arc through each window."""
     squares = np.empty(len(windows))
     polylines.haantjes_squares(polyline.data, polyline.are_distances, windows, squares)
-    return root(squares)
+    return polyline.roots(squares)

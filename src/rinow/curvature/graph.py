@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow._arrays import as_radius
+from rinow._arrays import as_radius, in_safe_unit, in_unit
 from rinow._printing import OneLine
 from rinow.curvature.graph_rows import N_BLOCKS, Arcs, as_arcs
 from rinow.curvature.graph_wald import wald_at_nodes
@@ -148,14 +148,18 @@ def graph_curvature(
     unweighted = not weighted if weighted is not None else bool((arcs.lengths == 1.0).all())
     if weighted is False:
         arcs = Arcs(arcs.n_nodes, arcs.tails, arcs.heads, np.ones_like(arcs.lengths), arcs.is_directed)
+    lengths, exponent = in_safe_unit(arcs.lengths)
+    arcs = Arcs(arcs.n_nodes, arcs.tails, arcs.heads, lengths, arcs.is_directed)
     one_way = arcs.is_directed | (arcs.tails < arcs.heads)
     edge_index = np.stack([arcs.tails[one_way], arcs.heads[one_way]], axis=1)
     undefined = np.full(arcs.n_nodes, np.nan)
     if kind == "wald":
-        nodes, spread, radii = wald_at_nodes(arcs, radius)
+        nodes, spread, radii = wald_at_nodes(arcs, None if radius is None else float(in_unit(radius, -exponent)))
+        nodes, spread, radii = in_unit(nodes, -2 * exponent), in_unit(spread, -2 * exponent), in_unit(radii, exponent)
         return GraphCurvature(nodes, np.full(len(edge_index), np.nan), edge_index, spread, radii, kind)
     chosen = np.flatnonzero(one_way)
     edges = _menger(arcs, chosen, unweighted) if kind == "menger" else _haantjes(arcs, chosen)
+    edges = in_unit(edges, -exponent)
     sums = np.asarray(np.bincount(edge_index.ravel(), np.repeat(edges, 2), arcs.n_nodes), np.float64)
     return GraphCurvature(sums, edges, edge_index, undefined, undefined.copy(), kind)
 

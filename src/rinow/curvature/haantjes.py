@@ -97,7 +97,7 @@ def arc_length(chords: ArrayLike, curvature: ArrayLike) -> Floats:
     -------
     arc_lengths : (...) ndarray of float
         In the unit of the chords and never shorter.  It is nan where the chord is
-        negative or either value nan.
+        negative or either value nan, and inf beyond the largest number.
 
     Raises
     ------
@@ -132,7 +132,8 @@ def arc_length(chords: ArrayLike, curvature: ArrayLike) -> Floats:
     array([0.10004167, 0.20033333])
     """
     c, kappa = _broadcast(chords, "chords", curvature, "curvature")
-    return np.where(c >= 0.0, c * (1.0 + (kappa * c) ** 2 / 24.0), np.nan)[()]
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.where(c >= 0.0, c * (1.0 + (kappa * c) ** 2 / 24.0), np.nan)[()]
 
 
 def _broadcast(x: ArrayLike, x_name: str, y: ArrayLike, y_name: str) -> tuple[Floats, Floats]:

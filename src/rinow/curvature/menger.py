@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow._arrays import as_distance_matrix, as_index_tuples
-from rinow.curvature.polyline import Polyline, root
+from rinow.curvature.polyline import as_polyline
 
 __all__ = ["menger_curvature"]
 
@@ -52,8 +52,7 @@ def menger_curvature(distances: ArrayLike, triples: ArrayLike) -> NDArray[np.flo
     :math:`10^{-15}/(Kc^2)`, :math:`c` the longest side of a triangle of three like
     sides or of a flat one with its middle point amidst, and by at most
     :math:`10^{-7}/c`.  A triple that misses the triangle inequality by less than a
-    1e-9th of its longest side counts as linear.  Lengths may range from 1e-100 to 1e100.
-    The cost is O(n_triples) after an O(n_points²) check of `distances`.
+    1e-9th of its longest side counts as linear.  The cost is O(n_triples) after an O(n_points²) check of `distances`.
 
     References
     ----------
@@ -69,6 +68,6 @@ def menger_curvature(distances: ArrayLike, triples: ArrayLike) -> NDArray[np.flo
     >>> rinow.menger_curvature([[0, 3, 5], [3, 0, 4], [5, 4, 0]], [[0, 1, 2]])
     array([0.4])
     """
-    D = as_distance_matrix(distances)
-    T = as_index_tuples(triples, width=3, n_points=len(D), name="triples")
-    return root(Polyline(D, are_distances=True, closed=False).menger_squares(T))
+    curve = as_polyline(as_distance_matrix(distances), distances=True, closed=False)
+    T = as_index_tuples(triples, width=3, n_points=len(curve.data), name="triples")
+    return curve.roots(curve.menger_squares(T))

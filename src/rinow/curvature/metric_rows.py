@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, issparse
 
 from rinow import tolerances
-from rinow._arrays import as_floats, as_points
+from rinow._arrays import as_floats, as_points, in_safe_unit, in_unit
 from rinow.curvature.clouds import arc_distances
 from rinow.errors import InvalidInputError
 from rinow.geodesics.exact import ExactGeodesics
-from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh
+from rinow.mesh import IntrinsicMesh, TriangleMesh, as_mesh, is_mesh_like
 from rinow.metric_space import MetricSpace
 
 __all__ = ["MetricRows", "Rose", "exact", "metric_rows"]
@@ -63,7 +63,7 @@ def metric_rows(space: Any) -> MetricRows:
     """
     if isinstance(space, MetricRows):
         return space
-    if isinstance(space, tuple | TriangleMesh | IntrinsicMesh) or hasattr(space, "faces"):
+    if is_mesh_like(space):
         return _surface(as_mesh(space))
     if issparse(space) or hasattr(space, "nodes"):
         space = MetricSpace.from_graph(space)
@@ -92,18 +92,19 @@ def _cloud(points: Floats) -> MetricRows:
     """Points with straight distances, or arcs along the surface in space that they lie on."""
     if not len(points) or not np.isfinite(points).all():
         raise InvalidInputError(f"space has {len(points)} points, not all finite; give at least one, all finite.")
+    P, exponent = in_safe_unit(points)
 
     def row(i: int, limit: float) -> Floats:
-        return np.linalg.norm(points - points[i], axis=1)
+        return in_unit(np.linalg.norm(P - P[i], axis=1), exponent)
 
     def finish(members: Indices, chosen: Indices, D: Floats) -> tuple[Floats, float]:
-        arcs = arc_distances(points[members], chosen) if points.shape[1] == 3 else None
-        return arcs or exact(members, chosen, D)
+        arcs = arc_distances(P[members], chosen) if P.shape[1] == 3 else None
+        return (in_unit(arcs[0], exponent), arcs[1]) if arcs else exact(members, chosen, D)
 
     def block(some: Indices, limit: float) -> Floats:
-        return np.linalg.norm(points[some, None] - points[some], axis=2)
+        return in_unit(np.linalg.norm(P[some, None] - P[some], axis=2), exponent)
 
-    return MetricRows(len(points), row, block, finish, _no_rose)
+    return MetricRows(len(P), row, block, finish, _no_rose)
 
 
 def _surface(mesh: TriangleMesh | IntrinsicMesh) -> MetricRows:

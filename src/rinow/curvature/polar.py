@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rinow import tolerances
 from rinow._arrays import as_indices
 from rinow.curvature.metric_rows import MetricRows, Rose, exact, metric_rows
+from rinow.curvature.units import LARGEST_SCALE
 from rinow.curvature.wald_point import wald_curvature
 from rinow.embedding.spaceform import SpaceForm
 from rinow.errors import InvalidInputError
@@ -193,6 +194,8 @@ def _surface(rows: MetricRows, p: int, ends: tuple[int, int], curvature: float |
     """The surface of the given curvature, or of that of Wald at p, at the scale of the two points, or the plane."""
     radius = float(rows.row(p, math.inf)[list(ends)].max())
     if curvature is None and 0 < radius < math.inf:
+        if not 1.0 / LARGEST_SCALE < radius < LARGEST_SCALE:
+            raise InvalidInputError(f"distances reach {radius:.3g}, and their curvature is no number; scale them.")
         found = wald_curvature(rows._replace(finish=exact), p, radius=radius, max_points=POINTS)
         curvature = found.value if found.exists else None
     return SpaceForm(curvature or 0.0)

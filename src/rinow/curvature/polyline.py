@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rinow import tolerances
-from rinow._arrays import as_distance_matrix, as_distances, as_points
+from rinow._arrays import as_distance_matrix, as_distances, as_points, in_safe_unit, in_unit
 from rinow.errors import InvalidInputError
 from rinow.kernels import polylines
 
-__all__ = ["Polyline", "as_polyline", "root"]
+__all__ = ["Polyline", "as_polyline"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -28,6 +28,8 @@ class Polyline:
     """What `data` holds."""
     closed: bool
     """Whether the last point is followed by the first."""
+    exponent: int = 0
+    """`data` are in the unit 2^exponent: their squares neither overflow nor vanish."""
 
     def windows(self, reach: int) -> Indices:
         """(n_points, 2 m + 1) consecutive points around each point, m = `reach` or less on a short curve.
@@ -49,6 +51,10 @@ class Polyline:
         polylines.menger_squares(self.data, self.are_distances, triples.reshape(-1, 3), squares.reshape(-1))
         return squares
 
+    def roots(self, squares: Floats) -> Floats:
+        """Curvatures in the user's unit from their squares; 0 if rounding or extrapolation has made one negative."""
+        return np.asarray(in_unit(np.sqrt(np.maximum(squares, 0.0)), -self.exponent))
+
     def chords(self, i: Indices, j: Indices) -> Floats:
         """Distances of the points i and j."""
         return self.data[i, j] if self.are_distances else np.linalg.norm(self.data[i] - self.data[j], axis=-1)
@@ -60,14 +66,11 @@ def as_polyline(points: ArrayLike, *, distances: bool | None, closed: bool) -> P
     if distances is None:
         distances = _may_be_distances(data)
     if distances:
-        return Polyline(as_distance_matrix(data, name="points"), True, closed)
+        data, exponent = in_safe_unit(as_distance_matrix(data, name="points"))
+        return Polyline(data, True, closed, exponent)
     data = as_points(data)
-    return Polyline(np.where(np.isfinite(data), data, np.nan), False, closed)
-
-
-def root(squares: Floats) -> Floats:
-    """Square roots; 0 for a square that rounding or extrapolation has made negative."""
-    return np.sqrt(np.maximum(squares, 0.0))
+    data, exponent = in_safe_unit(np.where(np.isfinite(data), data, np.nan))
+    return Polyline(data, False, closed, exponent)
 
 
 def _may_be_distances(data: Floats) -> bool:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rinow._arrays import as_indices
+from rinow._arrays import as_indices, in_safe_unit, in_unit
 from rinow.curvature.metric_rows import metric_rows
 from rinow.curvature.regions import region
 from rinow.kernels import regularity
@@ -79,10 +79,11 @@ def regular_radius(space: Any, point: int, *, rtol: float | None = None, max_poi
     while reach > 0:
         examined = min(radius, reach)
         ball = region(rows, point, examined, size=max_points, rtol=rtol)
-        order = np.argsort(ball.distances[0], kind="stable")
+        D, exponent = in_safe_unit(ball.distances)
+        order = np.argsort(D[0], kind="stable")
         bounds = np.empty(len(order))
-        regularity.regular_radii(np.ascontiguousarray(ball.distances[np.ix_(order, order)]), ball.rtol, bounds)
-        radius = min(radius, float(bounds.min()))
+        regularity.regular_radii(np.ascontiguousarray(D[np.ix_(order, order)]), ball.rtol, bounds)
+        radius = min(radius, float(in_unit(bounds.min(), exponent)))
         if radius >= SETTLED * examined:
             break
     return radius

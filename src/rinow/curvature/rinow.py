@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rinow._arrays import in_unit
 from rinow._printing import OneLine
 from rinow.curvature.regions import region
 from rinow.kernels import comparison
@@ -172,7 +173,8 @@ def rinow_curvature(
     (-inf, 0, -inf)
     """
     sample = region(space_or_mesh, points, radius, size=max_points, rtol=rtol)
-    D, error, n = sample.distances, sample.rtol, len(sample.indices)
+    error, n, exponent = sample.rtol, len(sample.indices), int(np.frexp(sample.distances.max())[1])
+    D = np.ldexp(sample.distances, -exponent)
     diameter = float(D.max())
     lower, upper = np.inf, LOWEST / diameter**2 if diameter > 0 else -np.inf
     lower_witness = upper_witness = np.full(4, -1)
@@ -181,7 +183,8 @@ def rinow_curvature(
         lower, lower_witness = _extreme(comparison.lower_bounds, part, lower, lower_witness, error)
         upper, upper_witness = _extreme(comparison.upper_bounds, part, upper, upper_witness, error)
     names = [tuple(int(i) for i in sample.indices[w[w >= 0]]) for w in (lower_witness, upper_witness)]
-    return RinowCurvature(lower, upper if names[1] else -np.inf, names[0], names[1], n)
+    lower, upper = (float(in_unit(k, -2 * exponent)) for k in (lower, upper if names[1] else -np.inf))
+    return RinowCurvature(lower, upper, names[0], names[1], n)
 
 
 def rinow_point_curvature(
@@ -244,7 +247,7 @@ def rinow_point_curvature(
     return RinowPointCurvature(
         value=0.5 * (balls[best].lower + balls[best].upper) if known else np.nan,
         standard_error=0.5 * (max(near) - min(near)) if known else np.nan,
-        exists=bool(known and gaps[best] * radii[best] ** 2 < CONTRAST),
+        exists=bool(known and gaps[best] * radii[best] * radii[best] < CONTRAST),
         radius=radii[best],
         balls=tuple(balls),
     )

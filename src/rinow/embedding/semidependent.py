@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rinow._arrays import as_quadruples
+from rinow._arrays import as_quadruples, in_unit, rows_in_own_unit
 from rinow._printing import OneLine
 from rinow.errors import InvalidInputError
 from rinow.kernels import quadruples as kernels
@@ -161,8 +161,10 @@ def robinson_curvature(quadruples: ArrayLike, *, order: int = 1, verify: bool = 
     if order not in (1, 2, 3):
         raise InvalidInputError(f"order = {order!r}; give 1, 2 or 3.")
     shape, Q = as_quadruples(quadruples)
+    Q, exponents = rows_in_own_unit(Q)
     value, lower, upper = np.empty(len(Q)), np.empty(len(Q)), np.empty(len(Q))
     robinson.robinsons(Q, int(order), value, lower, upper)
     if verify:
         robinson.verified_robinsons(Q, value, lower, upper)
-    return RobinsonCurvature(value.reshape(shape)[()], lower.reshape(shape)[()], upper.reshape(shape)[()])
+    value, lower, upper = (in_unit(x, -2 * exponents).reshape(shape)[()] for x in (value, lower, upper))
+    return RobinsonCurvature(value, lower, upper)

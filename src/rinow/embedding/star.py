@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rinow._arrays import as_floats
+from rinow._arrays import as_floats, in_unit, rows_in_own_unit
 from rinow.errors import InvalidInputError
 from rinow.kernels import stars
 
@@ -61,6 +61,7 @@ def star_curvature(radii: ArrayLike, chords: ArrayLike) -> NDArray[np.float64]:
         )
     n = r.shape[-1]
     out = np.empty(r.shape[:-1])
+    rows, exponents = rows_in_own_unit(np.concatenate([r.reshape(-1, n), c.reshape(-1, n)], axis=1))
     flat = out.reshape(-1)
-    stars.closed_star_curvatures(r.reshape(-1, n), c.reshape(-1, n), flat)
-    return flat.reshape(out.shape)[()]
+    stars.closed_star_curvatures(np.ascontiguousarray(rows[:, :n]), np.ascontiguousarray(rows[:, n:]), flat)
+    return in_unit(flat, -2 * exponents).reshape(out.shape)[()]

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_matrix
 
 from rinow.geodesics.batches import ball_rows, distance_rows
+from rinow.geodesics.contraction import Contraction, contraction
 from rinow.geodesics.queries import as_radii, as_sources, undefined_vertices
 from rinow.geodesics.unfolding import UnfoldedMesh, unfold
 from rinow.kernels.fans import SINGULAR
@@ -113,8 +114,16 @@ class ExactGeodesics:
         object.__setattr__(self, "mesh", as_mesh(self.mesh))
 
     @cached_property
+    def _contraction(self) -> Contraction | None:
+        return contraction(self.mesh)
+
+    @cached_property
     def _unfolded(self) -> UnfoldedMesh:
-        return unfold(self.mesh)
+        return unfold(self.mesh if self._contraction is None else self._contraction.mesh)
+
+    def _points(self, vertices: Indices) -> Indices:
+        """The vertices of the unfolded mesh at the places of some vertices."""
+        return vertices if self._contraction is None else self._contraction.first[vertices]
 
     def distances(self, sources: ArrayLike, *, max_distance: ArrayLike | None = None) -> Floats | csr_matrix:
         """Distances from the sources to all vertices, or to those within a radius.
@@ -144,7 +153,8 @@ class ExactGeodesics:
         """
         S = as_sources(sources, self.mesh.n_vertices)
         if max_distance is None:
-            rows, undefined = distance_rows(self._unfolded, S), undefined_vertices(self.mesh)
+            rows, undefined = distance_rows(self._unfolded, self._points(S)), undefined_vertices(self.mesh)
+            rows = rows if self._contraction is None else rows[:, self._contraction.first]
             rows[:, undefined] = rows[undefined[S]] = np.nan
             return rows
         offsets, vertices, distances, _ = self._balls(S, as_radii(max_distance, len(S)))
@@ -175,7 +185,7 @@ class ExactGeodesics:
         S = as_sources(sources, self.mesh.n_vertices)
         offsets, vertices, distances, directions = self._balls(S, as_radii(max_distance, len(S)), with_directions=True)
         u = self._unfolded
-        records = u.surface.vertices[u.rank[S]]
+        records = u.surface.vertices[u.rank[self._points(S)]]
         total_angles = np.where(records["kind"] == SINGULAR, np.nan, records["total_angle"])
         directions = np.clip(directions, 0.0, np.repeat(total_angles, np.diff(offsets)))
         return GeodesicBalls(offsets, vertices, distances, directions, total_angles)
@@ -183,8 +193,20 @@ class ExactGeodesics:
     def _balls(self, sources: Indices, radii: Floats, *, with_directions: bool = False) -> Balls:
         """Offsets, vertices, distances and directions; the ball of a source without a position is empty."""
         is_defined = ~undefined_vertices(self.mesh)[sources]
-        asked = sources[is_defined], radii[is_defined]
+        asked = self._points(sources[is_defined]), radii[is_defined]
         offsets, vertices, distances, directions = ball_rows(self._unfolded, *asked, with_directions=with_directions)
+        if self._contraction is not None:
+            offsets, vertices, entry = self._contraction.expanded(offsets, vertices.astype(np.intp))
+            distances, directions = distances[entry], directions[entry] if with_directions else directions
+            vertices = _source_first(vertices.astype(np.int32), offsets, sources[is_defined])
         counts = np.zeros(len(sources), np.intp)
         counts[is_defined] = np.diff(offsets)
         return np.concatenate([[0], np.cumsum(counts)]), vertices, distances, directions
+
+
+def _source_first(vertices: NDArray[np.int32], offsets: Indices, sources: Indices) -> NDArray[np.int32]:
+    """The vertices of balls in which that of a source changes places with the first one, which is at the same point."""
+    for start, stop, source in zip(offsets[:-1], offsets[1:], sources, strict=True):
+        place = start + int(np.argmax(vertices[start:stop] == source))
+        vertices[place], vertices[start] = vertices[start], source
+    return vertices

@@ -258,5 +258,7 @@ def _format_of(path: Path, *, sniff: bool = False) -> _Format:
         raise FileFormatError(f"{path}: there is no such file; check the name and the folder.")
     if os.path.isdir(path):
         raise FileFormatError(f"{path} is a folder; give the name of a mesh file.")
+    if sniff and os.path.isfile(path) and not os.path.getsize(path):
+        raise FileFormatError(f"{path}: the file is empty; export it again.")
     cure = "convert the mesh to PLY" if sniff else "choose one of these"
     raise FileFormatError(f"{path} has no suffix of a known mesh format ({' '.join(_FORMATS)}); {cure}.")

@@ -22,6 +22,6 @@ Distances of surfaces
     `hausdorff` over `box_trees` and `convex_pieces`.
 Relations between spaces
     `bitsets`, `compatibility`, `correspondences`, `distortion`; `correspondence_search`, `level_search`, `subset_maps`,
-    `unit_propagation`; `correspondence_tabu`, `bijection_tabu`, `dives`, `polish`; `edge_rows`, `landmark_maps` and
-    `distortion_bounds` of all vertices of meshes.
+    `unit_propagation`; `correspondence_tabu`, `bijection_tabu`, `assignment`, `dives`, `polish`; `edge_rows`,
+    `landmark_maps` and `distortion_bounds` of all vertices of meshes.
 """

@@ -106,7 +106,7 @@ def epsilon_graph(space: Any, epsilon: float, *, indices: ArrayLike | None = Non
     """
     whole = as_metric_space(space)
     D, step = finite_distances(whole), as_step(epsilon, "epsilon")
-    fine = step * step / (4.0 * whole.diameter) if whole.diameter > 0.0 else np.inf
+    fine = step * (step / (4.0 * whole.diameter)) if whole.diameter > 0.0 else np.inf
     if indices is None:
         chosen = farthest_point_net(whole, radius=float(np.nextafter(fine, 0.0))).indices
     else:
