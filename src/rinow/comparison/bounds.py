@@ -89,10 +89,12 @@ def _merges(D: Floats, method: str) -> Floats:
 def matching_bound(levels: Floats, clock: Clock | None = None) -> float:
     """Least level at which a perfect matching exists among the pairs (x, y) with levels[x, y] at most that.
 
-    When the time is over, the least level that is not excluded yet.
+    All x must be matched, and there are as many y, or more.  When the time is over, the least level that is not
+    excluded yet.  Each point needs a partner: levels at which one has none, whose matchings take longest, are left out.
     """
     values = np.unique(levels)
-    low, high = 0, len(values) - 1
+    partners = max(float(levels.min(axis=k).max()) for k in ((0, 1) if len(levels) == levels.shape[1] else (1,)))
+    low, high = int(np.searchsorted(values, partners)), len(values) - 1
     while low < high and not (clock and clock.over):
         middle = (low + high) // 2
         matched = maximum_bipartite_matching(csr_array(levels <= values[middle]), perm_type="column")
