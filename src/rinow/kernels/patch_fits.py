@@ -19,11 +19,11 @@ that bends it alike in all directions."""
 LOPSIDED = 0.3
 """Distance of the mean of the points from the centre, over the radius, from which on odd terms bias the centre too.
 
-It is 0.42 for half a disc.  There the next order shows the bias, with much less variance than the order two above,
-which counts as one farther above.
+It is 0.42 for half a disc.  There the next order shows the bias, with much less variance than the order two above.
 """
-PLAIN = 20.0
-"""Orders farther above count for what their squared differences exceed so many times the variance."""
+PLAIN, FARTHER = 20.0, 60.0
+"""Over such a ball the order two above, and those farther above, count for what their squared differences exceed so
+many times the variance."""
 WORSE = 30.0
 """Leverage over that of two orders below from which on an order tells less than that: of few rows of points it
 interpolates what it cannot resolve."""
@@ -160,20 +160,22 @@ def excess_over(d, above, times, share, s2, fit, values, gradients):
 def write_biases(t, reach, top, share, s2, fit, tables, values, gradients):
     """Write what orders differ by from the order two above, or over a lopsided ball from the next one.
 
-    Orders may agree with the next by chance, or drift from one to the next; what any order above shows plainly counts.
+    Over a lopsided ball orders may agree with the next by chance, or drift from one to the next: what any order above
+    shows plainly counts.
     """
     known = tables.second.shape[0] == 0
     lopsided = fit.origin[0] ** 2 + fit.origin[1] ** 2 > (LOPSIDED * reach) ** 2
-    lag, times = 1 if lopsided else 2, 1.0 if known else 0.0
+    lag = 1 if lopsided else 2
     for d in range(2, min(top - lag, N_BIASES + 1) + 1):
         if math.isnan(values[d, 0]):
             continue
-        excess, v = excess_over(d, d + lag, times, share, s2, fit, values, gradients)
-        if known:
-            for above in range(d + lag + 1, top + 1):
+        excess, v = excess_over(d, d + lag, 1.0 if known else 0.0, share, s2, fit, values, gradients)
+        if lopsided and known:
+            for above in range(d + 2, top + 1):
                 if above > d + 2 and tables.leverage[t, above - 2] > WORSE * tables.leverage[t, above - 4]:
                     break
-                excess = max(excess, excess_over(d, above, PLAIN, share, s2, fit, values, gradients)[0])
+                times = PLAIN if above == d + 2 else FARTHER
+                excess = max(excess, excess_over(d, above, times, share, s2, fit, values, gradients)[0])
         tables.bias[t, d - 2], tables.bias_variance[t, d - 2] = excess, v
 
 
