@@ -32,10 +32,12 @@ def proven_bias(difference: Floats, expected: Floats, flow: CurvatureFlow) -> Fl
     A scale and its half, by which biases are seen otherwise, agree where both hold so much of the surface that what
     bends in it has the total curvature 0.
     """
-    squares = np.square(difference)
+    columns = np.empty((len(difference), 2))  # of long arrays no more than needed is kept
+    ratios, excess = columns.T
+    np.square(difference, out=excess)
     with np.errstate(invalid="ignore"):
-        ratios = np.fmin(squares / expected, MOST)
-    columns = np.column_stack([ratios, squares - expected])
+        np.fmin(excess / expected, MOST, out=ratios)
+    excess -= expected
     columns[~np.isfinite(ratios)] = np.nan
-    ratio, excess = flow.means(columns, PASSES).T
-    return np.where(ratio > PROOF, excess, np.nan)
+    ratios, excess = flow.means(columns, PASSES).T
+    return np.where(ratios > PROOF, excess, np.nan)

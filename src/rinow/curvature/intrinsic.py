@@ -234,8 +234,8 @@ def _difference(a: Floats, b: Floats) -> Floats:
 def _beside(best: IntrinsicCurvature, candidate: Candidate, flow: CurvatureFlow) -> Candidate:
     """The candidate, with the bias that what it differs by from the best of smaller ones proves, beyond chords."""
     values, variance, bias, radius = candidate
-    chords = np.square(UNSEEN * np.square(best.gaussian) * np.square(flow.spacing))
-    expected = CALIBRATION**2 * (best.variance + best.squared_bias) + variance + chords
+    expected = CALIBRATION**2 * (best.variance + best.squared_bias) + variance
+    expected += np.square(UNSEEN * np.square(best.gaussian) * np.square(flow.spacing))  # by chords
     return values, variance, np.fmax(bias, proven_bias(values - best.gaussian, expected, flow)), radius
 
 
