@@ -10,6 +10,7 @@ from metric_shapes import flat_torus, hyperbolic_patch
 from naive import development as naive
 from rinow import IntrinsicMesh, InvalidInputError, TriangleMesh, VertexStatus, surface_curvature
 from rinow.curvature.angle_defect import longest_edges
+from rinow.curvature.disagreement import proven_bias
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.intrinsic import CALIBRATION, intrinsic_curvature
 from rinow.curvature.length_noise import LengthNoise
@@ -146,3 +147,13 @@ def test_parts_of_the_error_add_up_to_the_spread():
     expected = CALIBRATION**2 * (found.variance + found.squared_bias + found.unseen) + chords**2
     np.testing.assert_allclose(c.spread**2, expected, rtol=1e-12)
     assert (np.array([found.variance, found.squared_bias, found.unseen]) >= 0).all()
+
+
+def test_a_difference_proves_a_bias_only_if_there_is_one():
+    mesh = flat_torus()
+    nothing = np.zeros(mesh.n_vertices)
+    flow = CurvatureFlow(mesh)
+    assert np.isnan(proven_bias(nothing.copy(), nothing, flow)).all()  # values that agree exactly, without noise
+    np.testing.assert_allclose(proven_bias(nothing + 2.0, nothing, flow), 4.0)
+    np.testing.assert_allclose(proven_bias(nothing + 2.0, nothing + 1.0, flow), 3.0)
+    assert np.isnan(proven_bias(nothing + 1.0, nothing + 1.0, flow)).all()

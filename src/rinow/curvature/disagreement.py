@@ -35,8 +35,8 @@ def proven_bias(difference: Floats, expected: Floats, flow: CurvatureFlow) -> Fl
     columns = np.empty((len(difference), 2))  # of long arrays no more than needed is kept
     ratios, excess = columns.T
     np.square(difference, out=excess)
-    with np.errstate(invalid="ignore"):
-        np.fmin(excess / expected, MOST, out=ratios)
+    with np.errstate(divide="ignore", invalid="ignore"):  # values that agree exactly, without noise, prove nothing
+        np.minimum(excess / expected, MOST, out=ratios)
     excess -= expected
     columns[~np.isfinite(ratios)] = np.nan
     ratios, excess = flow.means(columns, PASSES).T
