@@ -92,17 +92,13 @@ def open_patch(n: int = 1000, seed: int = 7) -> Shape:
 
 def bump_on_plane(n: int = 1444, seed: int = 7) -> Shape:
     """A Gaussian bump, 1/3 high and K = 28 on top, amid a jittered square of side 4, normal upwards."""
-    m = round(n**0.5)
-    rng = np.random.default_rng(seed)
-    ij = _grid(m, m)
-    inside = ((ij > 0) & (ij < m - 1)).all(axis=0)
-    x, y = 4 * (ij + np.where(inside, rng.uniform(-0.25, 0.25, ij.shape), 0)) / (m - 1) - 2
+    square = open_patch(n, seed)
+    x, y = 2 * square.vertices[:, :2].T
     z = np.exp(-8 * (x * x + y * y)) / 3
     zx, zy, xx, xy, yy = -16 * x * z, -16 * y * z, (256 * x * x - 16) * z, 256 * x * y * z, (256 * y * y - 16) * z
     w2 = 1 + zx * zx + zy * zy
     mean = (2 * zx * zy * xy - (1 + zy * zy) * xx - (1 + zx * zx) * yy) / (2 * w2**1.5)
-    V = np.stack([x, y, z], axis=1)
-    return Shape(V, _grid_faces(m, m, rng, closed=False), (xx * yy - xy * xy) / w2**2, mean)
+    return Shape(np.stack([x, y, z], axis=1), square.faces, (xx * yy - xy * xy) / w2**2, mean)
 
 
 def cone(n_around: int = 12, n_rings: int = 4, slope: float = 1.0) -> Shape:
