@@ -8,22 +8,13 @@ from plates import perforated_plate
 from rinow.curvature import exact_facets
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.exact_facets import ends_of_facets
+from voxels import squares
 
 
 def ball_of_voxels(radius):
     """The boundary of all unit cubes of a lattice with centres within a radius."""
     lattice = np.arange(-radius - 1, radius + 2)
-    is_inside = np.sum(np.stack(np.meshgrid(lattice, lattice, lattice)) ** 2, axis=0) <= radius**2
-    squares = []
-    for axis in range(3):
-        u, v = np.eye(3, dtype=int)[[(axis + 1) % 3, (axis + 2) % 3]]
-        for step in (1, -1):
-            corner = np.argwhere(is_inside & ~np.roll(is_inside, -step, axis))
-            corner[:, axis] += step > 0
-            squares.append(np.stack([corner, corner + u, corner + u + v, corner + v], axis=1)[:, ::step])
-    vertices, index = np.unique(np.concatenate(squares).reshape(-1, 3), axis=0, return_inverse=True)
-    index = index.reshape(-1, 4)
-    return vertices.astype(float), np.concatenate([index[:, [0, 1, 2]], index[:, [0, 2, 3]]])
+    return squares(np.sum(np.stack(np.meshgrid(lattice, lattice, lattice)) ** 2, axis=0) <= radius**2)
 
 
 def marked(vertices, faces):

@@ -62,7 +62,7 @@ def cloud_estimate(cloud: Cloud, radius: float | None) -> Estimate:
     samples = sample(sheet, ladder, quality.selects, tasks)
     at_edge = rings_around(sheet, cloud.at_border, EDGE_RINGS)
     values, noise = blended_patches(sheet, ladder, quality, samples, at_edge, tasks)
-    out, direction1, direction2, first, _ = values
+    out, direction1, direction2, first, *_ = values
     out[:, 0] *= shrinkage(samples, values)
     gaussian, mean, risk, reach, height = out[:, :5].T.copy()
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rinow._arrays import read_only
 from rinow.curvature.exact_facets import ends_of_facets
 from rinow.curvature.stencils import N_BLOCKS
+from rinow.curvature.voxels import is_voxel_surface
 from rinow.kernels import crease_lines, creases, edge_noise, stencils
 from rinow.mesh import TriangleMesh
 
@@ -81,8 +82,15 @@ class EdgeTurnings:
         return read_only(gains)
 
     @cached_property
+    def are_steps(self) -> bool:
+        """The edges that turn are steps of voxels, and no crease."""
+        return is_voxel_surface(self.mesh, self.turnings)
+
+    @cached_property
     def ends_facet(self) -> Bools:
         """(n_edges,): a large flat facet ends there, a crease beyond doubt whose jump is the turning."""
+        if self.are_steps:
+            return np.zeros(len(self.turnings), np.bool_)
         return ends_of_facets(self.mesh, self.turnings, self.gains, self.halfedges)
 
     @cached_property
@@ -168,12 +176,12 @@ def crease_lines_of(turnings: EdgeTurnings) -> CreaseLines:
     """The creases of a mesh, linked to lines.
 
     Sections across the edges are followed twice: first up to edges that turn by much, then up to the creases found.
-    Edges whose jump could not exceed its standard error enough are not followed at all.
+    Edges whose jump could not exceed its standard error enough are not followed at all, nor the steps of voxels.
     """
     mesh, theta = turnings.mesh, np.nan_to_num(turnings.turnings)
     least = np.maximum(WEAK_ANGLE, WEAK_NOISE * turnings.least_errors) / MOST_JUMP
     flat = (turnings.least_errors < EXACT_NOISE) & (np.abs(theta) > EXACT_ANGLE / MOST_JUMP)
-    candidates = np.flatnonzero((np.abs(theta) >= least) | flat)
+    candidates = np.flatnonzero(((np.abs(theta) >= least) | flat) & (not turnings.are_steps))
     ends = np.where(turnings.ends_facet, creases.END, _ends_of_sections(theta, turnings.noise)).astype(np.int8)
     is_crease, jumps, errors = np.zeros(len(theta), np.bool_), theta, theta
     for _ in range(2):

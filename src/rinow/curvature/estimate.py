@@ -33,8 +33,8 @@ class Estimate:
     height, first_mean : (n_vertices,) ndarray of float or None
         Heights of the vertices over the surfaces fitted first, and the mean curvatures of these, whether or not smaller
         ones took their place.
-    left_out : (n_vertices,) ndarray of bool or None
-        The vertex took no part and has the values of a neighbour.
+    left_out, has_steps : (n_vertices,) ndarray of bool or None
+        The vertex took no part and has the values of a neighbour; there are low steps, which were taken for noise.
     """
 
     gaussian: Floats
@@ -51,6 +51,7 @@ class Estimate:
     height: Floats | None = None
     first_mean: Floats | None = None
     left_out: NDArray[np.bool_] | None = None
+    has_steps: NDArray[np.bool_] | None = None
 
     def with_gaussian(self, gaussian: Floats, spread: Floats) -> Estimate:
         """The same with another Gaussian curvature: k1 and k2 have it as their product.
@@ -65,6 +66,12 @@ class Estimate:
         mean = self.mean * (1.0 + share)
         half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
         return replace(self, gaussian=gaussian, spread=spread, mean=mean, k1=mean + half, k2=mean - half)
+
+    def with_steps(self, has_steps: NDArray[np.bool_]) -> Estimate:
+        """The same with steps at more vertices, if at any."""
+        if not has_steps.any():
+            return self
+        return replace(self, has_steps=has_steps if self.has_steps is None else self.has_steps | has_steps)
 
     def at(self, vertices: NDArray[np.intp]) -> Estimate:
         """The values at some vertices, in their order."""
@@ -89,6 +96,6 @@ class Estimate:
 def undefined(n_vertices: int) -> Estimate:
     """An estimate of everything with nan everywhere."""
     width = {"direction1": (3,), "direction2": (3,)}
-    names = [field.name for field in fields(Estimate) if field.name != "left_out"]
+    names = [field.name for field in fields(Estimate) if field.name not in ("left_out", "has_steps")]
     values: dict[str, Any] = {name: np.full((n_vertices, *width.get(name, ())), np.nan) for name in names}
     return Estimate(**values)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.stencils import rings_around
 from rinow.mesh import TriangleMesh
@@ -17,12 +18,13 @@ FLAT_RINGS = 3
 
 
 def flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
-    """(n_vertices,): every interior vertex within three rings has the angle 2π."""
+    """(n_vertices,): every interior vertex within three rings has the angle 2π, and that is no tread of voxels."""
     t = mesh.topology
     curved = (np.abs(mesh.vertex_angle_defects) > FLAT_DEFECT) & ~t.vertex_is_boundary
     if curved.mean() > 0.99:
         return ~curved & False
-    return ~rings_around(t, curved, FLAT_RINGS)
+    flat = ~rings_around(t, curved, FLAT_RINGS)
+    return flat & (not (flat.any() and EdgeTurnings(mesh).are_steps))
 
 
 def flatten(estimate: Estimate, is_flat: NDArray[np.bool_]) -> None:

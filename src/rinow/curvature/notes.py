@@ -18,11 +18,15 @@ __all__ = [
     "mesh_notes",
     "repeat_notes",
     "sheet_notes",
+    "step_notes",
     "weld_notes",
 ]
 
 ROUNDED = 0.002
 """Share of the mean edge from which on the rounding of coordinates is told: its noise is one percent of K then."""
+
+FEW_STEPS = 0.01
+"""Share of the vertices up to which steps are not worth a note."""
 
 
 def weld_notes(before: int, after: int) -> tuple[str, ...]:
@@ -102,6 +106,15 @@ def left_out_notes(left_out: NDArray[np.bool_] | None, n_removed: int) -> tuple[
         f"{n} vertices were left out, single ones far beside the surface or in the middle of an edge: they have the "
         "values of a neighbour.",
     )
+
+
+def step_notes(has_steps: NDArray[np.bool_] | None) -> tuple[str, ...]:
+    """What was done about low steps, if there are more than a few."""
+    n = 0 if has_steps is None else int(np.count_nonzero(has_steps))
+    if has_steps is None or n <= FEW_STEPS * len(has_steps):
+        return ()
+    what = "have steps of less than a spacing or so around them, as surfaces of voxels have"
+    return (f"{n} vertices {what}: these were taken for noise. If they are shape, give a radius of a few spacings.",)
 
 
 def quality_notes(quality: str, method: str) -> tuple[str, ...]:

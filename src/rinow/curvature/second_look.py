@@ -13,6 +13,7 @@ from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Ladder
 from rinow.curvature.searches import BESIDE, INSIDE, Centres, Found, look
 from rinow.curvature.stencils import rings_around
+from rinow.curvature.terraces import beyond_terraces
 from rinow.kernels import balls, patch_driver, patches, stencils
 
 __all__ = ["Values", "look_again", "missed"]
@@ -28,6 +29,8 @@ SURE, SMALL = 8.0, 0.1
 no noise: that of the least noisy fit may be too low by half, and what is smaller bends no ball of a few spacings."""
 MOST = 10.0
 """Height of a single vertex, over the noise, that counts at most: a few beside the surface are no bump."""
+INDEPENDENT = 2.0
+"""Median of the same up to which most of it is independent noise, for which it is 0.7."""
 LOOKS, STEPS = 5, 2
 """Most repetitions, and radii that balls are smaller each time: by a third."""
 LEAST, BESIDE_EDGE = 2, 3
@@ -42,7 +45,7 @@ class Values(NamedTuple):
     """At the vertices of a sheet what `patches.mean_values` tells: its columns, and principal directions.
 
     `first` (n,) is the H of the first look, and `again` (n,) tells where, away from boundaries, there was another one;
-    the heights, in a column, stay those over the fits of the first.
+    the heights, in a column, stay those over the fits of the first.  `steps` (n,) tells where these miss terraces.
     """
 
     columns: Floats
@@ -50,6 +53,7 @@ class Values(NamedTuple):
     direction2: Floats
     first: Floats
     again: Bools
+    steps: Bools
 
     @classmethod
     def of(cls, totals: Floats, normals: Floats) -> Values:
@@ -57,7 +61,7 @@ class Values(NamedTuple):
         n = len(totals)
         found = np.empty((n, 6)), np.empty((n, 3)), np.empty((n, 3))
         patches.mean_values(totals, normals, *found)
-        return cls(*found, found[0][:, 1].copy(), np.zeros(n, np.bool_))
+        return cls(*found, found[0][:, 1].copy(), np.zeros(n, np.bool_), np.zeros(n, np.bool_))
 
     def put(self, rows: NDArray[np.intp], other: Values) -> None:
         """Take over some rows, in place, from a later look."""
@@ -71,12 +75,28 @@ def missed(sheet: balls.Sheet, heights: Floats, noise: Floats) -> Bools:
     """(n,): a vertex and most of its neighbours are on one side of the fits, farther than noise puts them there."""
     if not sheet.is_oriented:
         return np.zeros(len(heights), np.bool_)
-    height, count = np.nan_to_num(heights), np.diff(sheet.offsets) + 1
-    ratio = np.divide(height, np.sqrt(noise), out=np.zeros_like(height), where=noise > 0.0)
-    sums, ratios = np.empty_like(height), np.empty_like(height)
-    stencils.ring_sums(height, sheet.offsets, sheet.neighbours, sums)
-    stencils.ring_sums(np.clip(ratio, -MOST, MOST), sheet.offsets, sheet.neighbours, ratios)
-    return (np.abs(ratios) > SURE * np.sqrt(count)) & (np.abs(sums) > SMALL * count * sheet.spacing)
+    return (_errors(sheet, heights, noise) > SURE) & (np.abs(_of_stars(sheet, heights)) > SMALL * sheet.spacing)
+
+
+def _errors(sheet: balls.Sheet, heights: Floats, noise: Floats) -> Floats:
+    """(n,): mean heights of vertices and their neighbours in standard errors of independent noise."""
+    ratio = np.divide(np.nan_to_num(heights), np.sqrt(noise), out=np.zeros_like(heights), where=noise > 0.0)
+    return np.abs(_of_stars(sheet, np.clip(ratio, -MOST, MOST))) * np.sqrt(np.diff(sheet.offsets) + 1)
+
+
+def _of_stars(sheet: balls.Sheet, values: Floats) -> Floats:
+    """(n,): means over vertices and their neighbours."""
+    means = np.empty_like(values)
+    stencils.ring_sums(np.nan_to_num(values), sheet.offsets, sheet.neighbours, means)
+    return means / (np.diff(sheet.offsets) + 1)
+
+
+def _detail(sheet: balls.Sheet, heights: Floats, noise: Floats, is_missed: Bools) -> Bools:
+    """(n,): what is missed around here is no terrace of voxels.  Where most is independent noise, nothing is one."""
+    is_missed = rings_around(sheet, is_missed, AROUND)
+    if not is_missed.any() or np.median(_errors(sheet, heights, noise)) < INDEPENDENT:
+        return is_missed
+    return beyond_terraces(sheet.vertices, (sheet.offsets, sheet.neighbours), sheet.spacing, is_missed, heights)
 
 
 def look_again(
@@ -91,16 +111,19 @@ def look_again(
     -----
     Order and radius are chosen by what fits of other orders and radii say.  Balls much larger than some bump hold it
     and say the same, that there is none, and samples of the plane around say so as well.  But the vertices then are far
-    beside the fit, all on one side.
+    beside the fit, all on one side.  Steps of voxels are as well, and are left (`terraces`).
     """
     if len(ladder.reaches) == 1:
         return
     least, heights = np.where(at_edge, LEAST + BESIDE_EDGE, LEAST), found.columns[:, HEIGHT].copy()
+    is_missed = missed(sheet, heights, noise)
+    is_detail = _detail(sheet, heights, noise, is_missed)
+    found.steps[:] = is_missed & ~is_detail
     for _ in range(LOOKS):
         with np.errstate(invalid="ignore"):
-            steps = np.searchsorted(ladder.reaches, found.columns[:, 3] / (sheet.spacing * ladder.factors) * (1 + 1e-9))
-        index = np.clip(steps - 1, 0, len(ladder.reaches) - 1)
-        is_missed = missed(sheet, heights, noise) & (index > least)
+            index = np.searchsorted(ladder.reaches, found.columns[:, 3] / (sheet.spacing * ladder.factors) * (1 + 1e-9))
+        index = np.clip(index - 1, 0, len(ladder.reaches) - 1)
+        is_missed = is_detail & missed(sheet, heights, noise) & (index > least)
         if not is_missed.any():
             return
         rows = np.flatnonzero(rings_around(sheet, is_missed, AROUND))
@@ -108,6 +131,7 @@ def look_again(
         high = np.maximum(high, least)[rows].astype(np.int32)
         again = _of_smaller(sheet, ladder, rows, high, turns, noise, at_edge, quality, tasks)
         rows = rows[np.isfinite(again.columns[rows, 0])]
+        is_detail[rows] = True
         found.put(rows, again)
         found.again[rows] = ~at_edge[rows]
         heights[rows] = again.columns[rows, HEIGHT]

@@ -139,7 +139,7 @@ def sectional(
     at_edge = rings_around(mesh.topology, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
     samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks, _sizes_of_components(mesh)[index])
     values, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
-    out, direction1, direction2, first, _ = values
+    out, direction1, direction2, first, _, steps = values
     out[:, 0] *= shrinkage(samples, values)
     columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
     gaussian, mean, risk, reach, height, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
@@ -150,9 +150,9 @@ def sectional(
     estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height, first)
     estimate.put(on_edge, ends)
     estimate.put(alone, beside)
-    left_out = np.zeros(mesh.n_vertices, np.bool_)
-    left_out[on_edge] = left_out[alone] = True
-    estimate = replace(estimate, left_out=left_out)
+    left_out, has_steps = np.zeros((2, mesh.n_vertices), np.bool_)
+    left_out[on_edge] = left_out[alone] = has_steps[index[steps]] = True
+    estimate = replace(estimate, left_out=left_out, has_steps=has_steps)
     repair_ends(mesh, estimate, radius is None)
     flatten(estimate, flat_vertices(mesh))
     if progress is not None:

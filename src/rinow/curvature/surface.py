@@ -19,7 +19,7 @@ from rinow.curvature.estimate import Estimate
 from rinow.curvature.geodesic_stars import geodesic_wald, robinson
 from rinow.curvature.intrinsic import intrinsic
 from rinow.curvature.lifted import lifted
-from rinow.curvature.notes import crease_notes, left_out_notes, mesh_notes, quality_notes
+from rinow.curvature.notes import crease_notes, left_out_notes, mesh_notes, quality_notes, step_notes
 from rinow.curvature.repairs import repair, sheets_of
 from rinow.curvature.sectional import sectional
 from rinow.curvature.status import VertexStatus, vertex_status
@@ -203,7 +203,7 @@ def surface_curvature(
     give_values(estimate, status, removed)
     result = assembled(estimate, status, chosen)
     notes += mesh_notes(surface, oriented=chosen not in BY_LENGTHS) + sheets.notes + crease_notes(on_crease)
-    notes += left_out_notes(estimate.left_out, len(removed))
+    notes += left_out_notes(estimate.left_out, len(removed)) + step_notes(estimate.has_steps)
     if quality != "best" and chosen not in BY_POSITIONS:
         notes += quality_notes(quality, chosen)
     return replace(relabelled(rescaled(result, unit), index), notes=notes)

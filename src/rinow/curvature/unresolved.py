@@ -11,6 +11,7 @@ from rinow.curvature.angle_defect import angle_defect, longest_edges, ring_devia
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.stencils import N_BLOCKS, empty_frames, ring_means, stencil_surface
+from rinow.curvature.terraces import beyond_terraces
 from rinow.kernels import quadrics, ring_jets
 from rinow.mesh import TriangleMesh
 
@@ -54,6 +55,7 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     - Heights of the vertices over the first fits, before smaller balls took their place.  Independent noise leaves them
       uncorrelated on every triangulation, and what is small beside the spacing, and not large beside the noise, is
       noise too, correlated or not.
+    - Steps of voxels are common to neighbours as well, but low (`terraces`).
     - Quartics of three rings against fits, the first and those in their place: with detail in between, rings are taken.
     - Single rings against cubics of three rings, which they are averaged with as far as those miss detail.
     - Quartics against cubics.  They come nearest to the truth, if there is detail in between, and if they in turn leave
@@ -69,8 +71,11 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     least = np.fmin(SMALL, DEEP * estimate.noise / spacing)
     share = np.minimum(_common_share(mesh, height, OF_HEIGHTS, SMALL), _share_of(DEPTH, depth, least))
     share[~np.isfinite(estimate.gaussian) | mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
+    rings = mesh.topology.neighbour_offsets, mesh.topology.neighbours
+    has_steps = (share > 0.0) & ~beyond_terraces(mesh.vertices, rings, spacing, share > 0.0, estimate.height)
+    share[has_steps] = 0.0
     if not share.any():
-        return estimate
+        return estimate.with_steps(has_steps)
     star, jets = _two_rings(mesh), np.empty((mesh.n_vertices, 2, 2))
     ring_jets.ring_jets(stencil_surface(mesh), N_BLOCKS, jets)
     for mean in (first, estimate.mean):
@@ -78,8 +83,8 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
         share = np.minimum(share, _common_share(mesh, missed, OF_FITS))
     share[~np.isfinite(star.gaussian)] = 0.0
     if not share.any():
-        return estimate
-    return _blend(estimate, _with_detail_of_rings(mesh, star, jets, spacing), share)
+        return estimate.with_steps(has_steps)
+    return _blend(estimate, _with_detail_of_rings(mesh, star, jets, spacing), share).with_steps(has_steps)
 
 
 def _two_rings(mesh: TriangleMesh) -> Estimate:

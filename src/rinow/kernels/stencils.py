@@ -88,6 +88,20 @@ def norm(vector):
 
 
 @parallel_kernel
+def longest_links(vertices, offsets, neighbours, out):
+    """Write the distance of the farthest neighbour of each vertex; 0 without any."""
+    for i in prange(len(out)):
+        longest = 0.0
+        for k in range(offsets[i], offsets[i + 1]):
+            square = 0.0
+            for c in range(3):
+                d = vertices[neighbours[k], c] - vertices[i, c]
+                square += d * d
+            longest = max(longest, square)
+        out[i] = math.sqrt(longest)
+
+
+@parallel_kernel
 def ring_sums(values, offsets, neighbours, out):
     """Write the sum of values (n,) over each vertex and its neighbours."""
     for v in prange(offsets.shape[0] - 1):
