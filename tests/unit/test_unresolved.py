@@ -142,3 +142,12 @@ def test_without_orientation_there_is_no_mean_curvature():
     gaussian, mean = single_rings(mesh).T
     assert np.isfinite(gaussian[~mesh.topology.vertex_is_boundary]).all()
     assert np.isnan(mean).all()
+
+
+def test_waves_of_four_spacings_are_no_steps_of_voxels():
+    # They are as low as these on the mean of a star, but not at single vertices.
+    V, K, H, _ = folded_sphere(waves(4))
+    result = rinow.surface_curvature((V, SPHERE.faces))
+    assert relative_error(result.gaussian, K) < 0.5
+    assert relative_error(result.mean, H) < 0.25
+    assert not any("steps" in note for note in result.notes)

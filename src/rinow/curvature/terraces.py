@@ -15,12 +15,13 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Rows = tuple[NDArray[np.integer[Any]], NDArray[np.integer[Any]]]
 
-LEAST, MOST = 0.6, 1.3
+LEAST, MOST = 0.6, 1.5
 """Half of a voxel, in spacings, for cubes and for voxels more than twice as long as wide.
 
 Marching cubes have three vertices on two squares of the grid or so: half a side of a cube is 0.57 spacings."""
-GAIN = 0.95
-"""Half of the longest side, in spacings, over what diagonals exceed these by: 0.57 for cubes, 1.14 for 1 : 1 : 2.5."""
+GAIN = 1.1
+"""Half of the longest side, in spacings, over what diagonals exceed these by, and a seventh more, since fits err: for
+cubes 0.57 over 0.6, for 1 : 1 : 2.5 it is 1.14 over 1.2."""
 LONG = 0.98
 """Share of the vertices that have no edge longer than the diagonal of a face of the voxels."""
 FEW = 5e-4
@@ -62,18 +63,11 @@ def beyond_terraces(vertices: Floats, rings: Rows, spacing: Floats, is_missed: B
     is_beyond = np.zeros(len(heights), np.bool_)
     if not len(rows):
         return is_beyond
-    is_high = np.abs(_of_stars(heights, rings)) > _half_voxels(vertices, rings, spacing)
+    is_high = np.abs(heights) > _half_voxels(vertices, rings, spacing)
     links = csr_array((np.ones(len(neighbours), np.bool_), neighbours, offsets), shape=(len(heights),) * 2)
     component = connected_components(links[rows][:, rows], directed=False)[1]
     is_beyond[rows] = (np.bincount(component, is_high[rows]) > FEW * np.bincount(component))[component]
     return is_beyond
-
-
-def _of_stars(values: Floats, rings: Rows) -> Floats:
-    """(n_vertices,): means over vertices and their neighbours."""
-    sums = np.empty_like(values)
-    stencils.ring_sums(np.nan_to_num(values), *rings, sums)
-    return sums / (np.diff(rings[0]) + 1)
 
 
 def _half_voxels(vertices: Floats, rings: Rows, spacing: Floats) -> Floats:
@@ -88,6 +82,8 @@ def _half_voxels(vertices: Floats, rings: Rows, spacing: Floats) -> Floats:
         return np.zeros(len(spacing))
     diagonal = 2.0 ** (np.round(STEPS * np.log2(np.quantile(longest, LONG))) / STEPS)
     for _ in range(PASSES):
-        spacing = _of_stars(spacing, rings)
+        sums = np.empty_like(spacing)
+        stencils.ring_sums(np.nan_to_num(spacing), *rings, sums)
+        spacing = sums / (np.diff(rings[0]) + 1)
     ratio = np.divide(diagonal, spacing, out=np.zeros_like(spacing), where=spacing > 0.0)
     return spacing * np.clip(GAIN * (ratio - 1.0), LEAST, MOST)

@@ -71,8 +71,9 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     least = np.fmin(SMALL, DEEP * estimate.noise / spacing)
     share = np.minimum(_common_share(mesh, height, OF_HEIGHTS, SMALL), _share_of(DEPTH, depth, least))
     share[~np.isfinite(estimate.gaussian) | mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
-    rings = mesh.topology.neighbour_offsets, mesh.topology.neighbours
-    has_steps = (share > 0.0) & ~beyond_terraces(mesh.vertices, rings, spacing, share > 0.0, estimate.height)
+    rings, has_steps = (mesh.topology.neighbour_offsets, mesh.topology.neighbours), share > 0.0
+    if has_steps.any() and not EdgeTurnings(mesh).are_steps:
+        has_steps &= ~beyond_terraces(mesh.vertices, rings, spacing, has_steps, estimate.height)
     share[has_steps] = 0.0
     if not share.any():
         return estimate.with_steps(has_steps)
