@@ -11,7 +11,7 @@ from rinow.cli._terminal import print_counts, print_json, print_notes, working
 from rinow.comparison.hausdorff import HausdorffDistance
 from rinow.comparison.surfaces import check_connected
 from rinow.errors import FileFormatError, InvalidInputError, naming
-from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.mesh_files import check_outputs, read_mesh, write_result
 from rinow.io.point_files import check_has_faces
 from rinow.io.tables import check_tables, read_distances, read_points, write_columns
 from rinow.mesh import TriangleMesh
@@ -142,7 +142,7 @@ def _write(output: tuple[Path, ...], study: ComparisonStudy, shapes: list[Any]) 
                 write_columns(path, {"distance": values}, meaning)
             else:
                 units = {"distance": meaning}
-                notes += write_mesh(path, shape, {"distance": values}, units=units, quality="distance")
+                notes += write_result(path, shape, {"distance": values}, units, "distance")
     return notes
 
 

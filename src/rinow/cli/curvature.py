@@ -11,7 +11,7 @@ from rinow._version import __version__
 from rinow.cli._arguments import Flag, Outputs
 from rinow.cli._terminal import print_json, print_notes, print_study, working
 from rinow.errors import InvalidInputError, naming
-from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.mesh_files import check_outputs, read_mesh, write_result
 from rinow.io.point_files import check_point_outputs, holds_points, read_cloud, write_points
 from rinow.io.tables import check_tables, read_distances, write_columns
 from rinow.metric_space import MetricSpace
@@ -62,8 +62,9 @@ def curvature(
         Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.  Points without faces: PLY, NPZ, NPY, or
         text with x, y, z on each line (XYZ, CSV, TSV, TXT, DAT).  With --distances a square matrix as text, NPY or NPZ.
     output
-        File to write the mesh and its curvature to; may be repeated.  PLY, VTP, VTK, NPZ and GIFTI carry fields; points
-        are written as PLY, CSV or NPZ, points known by their distances as CSV or NPZ.
+        File to write the mesh and its curvature to; may be repeated.  PLY, VTP, VTK, NPZ and GIFTI carry fields;
+        lh.mean.curv holds one for FreeSurfer.  Points are written as PLY, CSV or NPZ, points known by their distances
+        as CSV or NPZ.
     method
         How to compute the curvature, for meshes; auto needs no setting.  sectional and lifted use positions; intrinsic,
         wald, robinson and angle_defect use edge lengths only and give the field gaussian only.
@@ -76,7 +77,7 @@ def curvature(
     rtol
         Distances: how much the axioms of a metric may be broken, relative to the largest one.
     field
-        The scalar that becomes `quality` in PLY, and is drawn, in the report at first.
+        The scalar that becomes `quality` in PLY, fills a .curv file, and is drawn, in the report at first.
     picture
         PNG file to draw four views to.
     report
@@ -115,7 +116,7 @@ def curvature(
     with study.timed("writing"):
         for path in output:
             with working(f"writing {path.name}"):
-                notes += write_mesh(path, surface, study.vertex_data(field), units=study.units(), quality=field)
+                notes += write_result(path, surface, study.vertex_data(field), study.units(), field)
         Views(picture, report, up).write(study, features, field=field, title=mesh.name)
     if json:
         print_json(_record(mesh, study, mesh_counts(surface), field, outputs, notes))

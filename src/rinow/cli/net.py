@@ -11,7 +11,7 @@ import numpy as np
 from rinow._version import __version__
 from rinow.cli._arguments import Flag, Outputs
 from rinow.cli._terminal import print_counts, print_json, print_notes, working
-from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.mesh_files import check_outputs, read_mesh, write_result
 from rinow.io.point_files import check_has_faces
 from rinow.io.tables import check_tables, write_columns
 from rinow.mesh import TriangleMesh
@@ -89,7 +89,7 @@ def _write_mesh(path: Path, result: FarthestPointNet, surface: TriangleMesh, uni
         "net_distance": f"geodesic distance from the net, unit {unit}",
         "net_label": "nearest point of the net, by its place in it; -1 off the surface",
     }
-    return write_mesh(path, surface, fields, units=units, quality="net_distance")
+    return write_result(path, surface, fields, units, "net_distance")
 
 
 def _write_points(path: Path, result: FarthestPointNet, vertices: np.ndarray, unit: str) -> None:

@@ -100,7 +100,7 @@ def _greatest_eigenvalues(products: Floats, clock: Clock) -> tuple[Floats, Float
 
     if n > DENSE:
         try:
-            operator = LinearOperator((n, n), matvec=cast(Any, times), dtype=products.dtype)
+            operator = cast(Any, LinearOperator)((n, n), matvec=times, dtype=products.dtype)
             found: Any = eigsh(operator, DIMENSIONS, which="LA", v0=np.linspace(1.0, 2.0, n))
             return found
         except ArpackNoConvergence:

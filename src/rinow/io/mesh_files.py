@@ -15,8 +15,15 @@ from rinow.errors import FileFormatError, InvalidInputError
 from rinow.io.atomic import check_targets
 from rinow.io.faults import reading, writing
 from rinow.io.fields import VTK_NAMES, checked_fields, renamed
-from rinow.io.freesurfer import is_freesurfer, read_freesurfer, write_freesurfer
-from rinow.io.gifti import read_gifti, write_gifti
+from rinow.io.freesurfer import (
+    chosen_field,
+    is_freesurfer,
+    read_curv,
+    read_freesurfer,
+    write_curv,
+    write_freesurfer,
+)
+from rinow.io.gifti import in_single_precision, read_gifti, write_gifti
 from rinow.io.glb import read_glb, write_glb
 from rinow.io.npz import read_npz, write_npz
 from rinow.io.obj import read_obj, write_obj
@@ -27,7 +34,7 @@ from rinow.io.vtk import read_vtp, write_vtk
 from rinow.io.vtk_legacy import read_legacy_vtk
 from rinow.mesh import TriangleMesh, as_triangle_mesh
 
-__all__ = ["check_outputs", "demo_mesh", "read_mesh", "write_mesh"]
+__all__ = ["check_outputs", "demo_mesh", "read_mesh", "write_mesh", "write_result"]
 
 PathLike = str | os.PathLike[str]
 
@@ -46,6 +53,7 @@ class _Format:
 _PLY = _Format("PLY", read_ply, write_ply, has_fields=True)
 _GIFTI = _Format("GIFTI", read_gifti, write_gifti, has_fields=True)
 _FREESURFER = _Format("FreeSurfer", read_freesurfer, write_freesurfer)
+_CURV = _Format("curv", read_curv, write_curv, has_fields=True)
 
 _FORMATS = {
     ".ply": _PLY,
@@ -59,6 +67,7 @@ _FORMATS = {
     ".gii": _GIFTI,
     ".gii.gz": _GIFTI,
     **dict.fromkeys((".white", ".pial", ".inflated", ".sphere", ".orig", ".smoothwm"), _FREESURFER),
+    ".curv": _CURV,
 }
 
 
@@ -130,7 +139,7 @@ def write_mesh(
     Parameters
     ----------
     path : path
-        A file with a suffix that `read_mesh` knows; an existing one is replaced.
+        A file with a suffix that `read_mesh` knows, or .curv; an existing one is replaced.
     mesh : TriangleMesh, (V, F) pair or object with vertices and faces
         The surface.
     vertex_data : mapping of str to (n_vertices, ...) array_like of float or int, optional
@@ -138,7 +147,7 @@ def write_mesh(
     units : mapping of str to str, optional
         What each field means (quantity, unit, sign); written beside the fields.
     quality : str, optional
-        Name of the field that PLY files call ``quality``, as MeshLab expects.
+        Name of the field that PLY files call ``quality``, as MeshLab expects, and that a .curv file holds.
 
     Returns
     -------
@@ -164,6 +173,7 @@ def write_mesh(
     ``stem.field.shape.gii`` for each field) keep every field and every bit, nan included.  In VTP and VTK the fields
     gaussian, mean, k1 and k2 are called Gauss_Curvature, Mean_Curvature, Maximum_Curvature and Minimum_Curvature, as
     by VTK itself.  OBJ and OFF keep the geometry only; STL, GLB and FreeSurfer files keep it in single precision.
+    FreeSurfer's .curv files hold one field: that named before the suffix (``lh.mean.curv``), else `quality`.
 
     Examples
     --------
@@ -181,6 +191,9 @@ def write_mesh(
     fields = checked_fields(surface.vertex_data if vertex_data is None else vertex_data, surface.n_vertices)
     if quality is not None and quality not in fields:
         raise InvalidInputError(f"quality = {quality!r} is not one of the fields {', '.join(fields) or '(none)'}.")
+    if form is _CURV:
+        chosen = chosen_field(file, fields, quality)
+        fields = {chosen: fields[chosen]}
     names = {quality: "quality"} if form is _PLY and quality is not None else form.names
     meanings = {name: text for name, text in (units or {}).items() if name in fields}
     with writing(file, form.name):
@@ -193,6 +206,15 @@ def write_mesh(
         )
         notes = (left_out, *notes)
     return notes
+
+
+def write_result(
+    path: PathLike, mesh: TriangleMesh, vertex_data: Mapping[str, ArrayLike], units: Mapping[str, str], quality: str
+) -> tuple[str, ...]:
+    """As `write_mesh`, but so that other programs read it: GIFTI in single precision, as its standard has it."""
+    if _format_of(Path(path)) is _GIFTI:
+        mesh, vertex_data = in_single_precision(mesh, checked_fields(vertex_data, mesh.n_vertices))
+    return write_mesh(path, mesh, vertex_data, units=units, quality=quality)
 
 
 def check_outputs(
