@@ -175,7 +175,7 @@ class MetricSpace:
 
         Parameters
         ----------
-        graph : scipy sparse matrix of shape (n, n), or networkx graph
+        graph : scipy sparse matrix of shape (n, n), or networkx or igraph graph
             The entries, or the edge attribute "weight" (1 where it is missing), are the lengths of the edges, at
             least 0; a stored 0 is an edge too.  Every edge leads both ways; of parallel or opposite edges the
             shortest counts.
