@@ -17,14 +17,16 @@ __all__ = ["graph_edge_lengths"]
 def graph_edge_lengths(graph: Any) -> csr_array:
     """The lengths of the edges as a sparse matrix; zeros are kept, parallel edges reduced to the shortest."""
     labels: Sequence[Any] | None = None
+    tails: Any
+    heads: Any
     if issparse(graph):
         edges = coo_array(graph)
         tails, heads, lengths = edges.row, edges.col, edges.data
         n_rows, n_columns = graph.shape
     elif hasattr(graph, "get_edgelist") and hasattr(graph, "vcount"):  # igraph's
-        ends, n_rows = graph.get_edgelist(), graph.vcount()
-        tails, heads = zip(*ends, strict=True) if ends else ((), ())
-        lengths = graph.es["weight"] if "weight" in graph.es.attributes() else [1.0] * len(ends)
+        listed, n_rows = graph.get_edgelist(), graph.vcount()
+        tails, heads = zip(*listed, strict=True) if listed else ((), ())
+        lengths = graph.es["weight"] if "weight" in graph.es.attributes() else [1.0] * len(listed)
         n_columns = n_rows
     elif hasattr(graph, "nodes") and hasattr(graph, "edges"):
         labels = list(graph.nodes)
@@ -45,7 +47,8 @@ def graph_edge_lengths(graph: Any) -> csr_array:
     wrong = np.flatnonzero(~(weights >= 0))
     if len(wrong):
         e = wrong[0]
-        tail, head = (int(i) if labels is None else labels[int(i)] for i in (tails[e], heads[e]))
+        ends = int(tails[e]), int(heads[e])
+        tail, head = ends if labels is None else (labels[i] for i in ends)
         raise InvalidInputError(f"graph[{tail!r}, {head!r}] = {weights[e]} is not a length; give numbers >= 0.")
     order = np.lexsort((weights, heads, tails))
     pairs = np.stack([tails, heads]).astype(np.intp)[:, order]

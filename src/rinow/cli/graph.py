@@ -63,8 +63,8 @@ def graph(
     if not json:
         _print(str(edges), study)
         return
-    record = {"input": str(edges), "kind": kind, "unit": study.curvature_unit, "counts": study.counts()}
-    record["weighted"] = study.weighted
+    record: dict[str, object] = {"input": str(edges), "kind": kind, "unit": study.curvature_unit}
+    record |= {"weighted": study.weighted, "counts": study.counts()}
     files = {"seconds": {"curvature": study.seconds}, "outputs": [str(path) for path in output]}
     print_json({"rinow": __version__, **record, "percentiles": study.percentiles(), **files})
 

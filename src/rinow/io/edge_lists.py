@@ -7,7 +7,7 @@ import csv
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
@@ -63,10 +63,11 @@ def read_graph(path: Path) -> GraphFile:
     suffix = path.suffix.lower()
     with reading(path, suffix.removeprefix(".").upper() or "graph"):
         if suffix == ".npz":
-            lengths = coo_array(load_npz(path))
-            if lengths.shape[0] != lengths.shape[1]:
-                raise FileFormatError(f"the matrix has shape {lengths.shape}; that of a graph is square.")
-            return GraphFile(tuple(map(str, range(lengths.shape[0]))), lengths, None)
+            matrix: Any = load_npz(path)
+            n, n_columns = matrix.shape
+            if n != n_columns:
+                raise FileFormatError(f"the matrix has {n} rows of {n_columns}; that of a graph is square.")
+            return GraphFile(tuple(map(str, range(n))), coo_array(matrix), None)
         if suffix == ".graphml":
             nodes, edges, is_directed = _graphml(path)
         elif suffix in SUFFIXES:
