@@ -60,8 +60,9 @@ def curvature(
     Parameters
     ----------
     mesh
-        Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.  Points without faces: PLY, NPZ, NPY, or
-        text with x, y, z on each line (XYZ, CSV, TSV, TXT, DAT).  With --distances a square matrix as text, NPY or NPZ.
+        Mesh file: PLY, OBJ, STL, OFF, GLB, 3MF, GIFTI, FreeSurfer, VTP, VTK or NPZ.  Points without faces: PLY, NPZ,
+        NPY, or text with x, y, z on each line (XYZ, CSV, TSV, TXT, DAT).  With --distances a square matrix as text, NPY
+        or NPZ.
     output
         File to write the mesh and its curvature to; may be repeated.  PLY, VTP, VTK, NPZ and GIFTI carry fields;
         lh.mean.curv holds one for FreeSurfer.  Points are written as PLY, CSV or NPZ, points known by their distances

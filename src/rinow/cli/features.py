@@ -33,7 +33,7 @@ def features(
     Parameters
     ----------
     mesh
-        Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.
+        Mesh file: PLY, OBJ, STL, OFF, GLB, 3MF, GIFTI, FreeSurfer, VTP, VTK or NPZ.
     output
         File to write the mesh and its features to; may be repeated.  PLY, VTP, VTK, NPZ and GIFTI carry fields.
     picture

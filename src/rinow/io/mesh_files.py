@@ -30,6 +30,7 @@ from rinow.io.obj import read_obj, write_obj
 from rinow.io.off import read_off, write_off
 from rinow.io.ply import read_ply, write_ply
 from rinow.io.stl import read_stl_mesh, write_stl
+from rinow.io.threemf import read_3mf, write_3mf
 from rinow.io.vtk import read_vtp, write_vtk
 from rinow.io.vtk_legacy import read_legacy_vtk
 from rinow.mesh import TriangleMesh, as_triangle_mesh
@@ -61,6 +62,7 @@ _FORMATS = {
     ".stl": _Format("STL", read_stl_mesh, write_stl),
     ".off": _Format("OFF", read_off, write_off),
     ".glb": _Format("GLB", read_glb, write_glb),
+    ".3mf": _Format("3MF", read_3mf, write_3mf),
     ".npz": _Format("NPZ", read_npz, write_npz, has_fields=True),
     ".vtp": _Format("VTP", read_vtp, write_vtk, has_fields=True, names=VTK_NAMES),
     ".vtk": _Format("VTK", read_legacy_vtk, write_vtk, has_fields=True, names=VTK_NAMES),
@@ -77,8 +79,8 @@ def read_mesh(path: PathLike) -> TriangleMesh:
     Parameters
     ----------
     path : path
-        A file whose suffix is, in any case, .ply, .obj, .stl, .off, .glb, .npz, .vtp, .vtk (PolyData), .gii, .gii.gz
-        or a name of FreeSurfer's surfaces (.white, .pial, .inflated, .sphere, .orig, .smoothwm; other names are
+        A file whose suffix is, in any case, .ply, .obj, .stl, .off, .glb, .3mf, .npz, .vtp, .vtk (PolyData), .gii,
+        .gii.gz or a name of FreeSurfer's surfaces (.white, .pial, .inflated, .sphere, .orig, .smoothwm; other names are
         known by their first bytes).
 
     Returns
@@ -172,7 +174,7 @@ def write_mesh(
     PLY (binary, positions and real fields in double precision), VTP, VTK, NPZ and GIFTI (one companion file
     ``stem.field.shape.gii`` for each field) keep every field and every bit, nan included.  In VTP and VTK the fields
     gaussian, mean, k1 and k2 are called Gauss_Curvature, Mean_Curvature, Maximum_Curvature and Minimum_Curvature, as
-    by VTK itself.  OBJ and OFF keep the geometry only; STL, GLB and FreeSurfer files keep it in single precision.
+    by VTK itself.  OBJ, OFF and 3MF keep the geometry only; STL, GLB and FreeSurfer files keep it in single precision.
     FreeSurfer's .curv files hold one field: that named before the suffix (``lh.mean.curv``), else `quality`.
 
     Examples
