@@ -1,0 +1,40 @@
+"""What other programs show of the files: the documentation says it, and it is so."""
+
+import numpy as np
+import pytest
+import trimesh
+
+import rinow
+
+POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.5]])
+FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+FIELDS = {"gaussian": np.array([1.5, 2, -3, 1e-9]), "mean": np.array([4.0, 3, 2, 1])}
+
+
+def test_vtk_reads_all_fields_of_vtp_and_none_of_ply(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    for name in ("a.vtp", "a.ply"):
+        rinow.write_mesh(tmp_path / name, (POINTS, FACES), FIELDS, quality="mean")
+    vtp, ply = (pyvista.read(tmp_path / name) for name in ("a.vtp", "a.ply"))
+    np.testing.assert_array_equal(vtp.points, POINTS)
+    np.testing.assert_array_equal(vtp["Gauss_Curvature"], FIELDS["gaussian"])
+    np.testing.assert_array_equal(vtp["Mean_Curvature"], FIELDS["mean"])
+    np.testing.assert_array_equal(ply.points, POINTS)
+    assert list(ply.point_data) == []
+
+
+def test_meshlab_shows_the_chosen_field_of_ply_as_quality(tmp_path):
+    pymeshlab = pytest.importorskip("pymeshlab")
+    rinow.write_mesh(tmp_path / "a.ply", (POINTS, FACES), FIELDS, quality="mean")
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(tmp_path / "a.ply"))
+    np.testing.assert_array_equal(meshes.current_mesh().vertex_scalar_array(), FIELDS["mean"])
+
+
+def test_trimesh_reads_all_fields_of_ply(tmp_path):
+    rinow.write_mesh(tmp_path / "a.ply", (POINTS, FACES), FIELDS, quality="mean")
+    mesh = trimesh.load(tmp_path / "a.ply", process=False)
+    np.testing.assert_array_equal(mesh.vertices, POINTS)
+    read = mesh.metadata["_ply_raw"]["vertex"]["data"]
+    np.testing.assert_array_equal(read["quality"], FIELDS["mean"])
+    np.testing.assert_array_equal(read["gaussian"], FIELDS["gaussian"])
