@@ -17,7 +17,7 @@ from rinow.errors import FileFormatError
 from rinow.io.faults import reading
 from rinow.io.tables import TEXT, text_of
 
-__all__ = ["GraphFile", "read_graph"]
+__all__ = ["GraphFile", "names_edges", "read_graph"]
 
 SUFFIXES = (*TEXT, ".edges", ".edgelist", ".graphml", ".npz")
 
@@ -98,6 +98,11 @@ def _length(text: str, place: str) -> float:
     return length
 
 
+def names_edges(heading: Sequence[str]) -> bool:
+    """Whether a heading in small letters names the ends of edges."""
+    return all(any(word in heading for word in words) for words in (SOURCES, TARGETS))
+
+
 def _is_number(text: str) -> bool:
     try:
         float(text)
@@ -118,11 +123,10 @@ def _listed(text: str) -> Iterator[Edge]:
     if not rows:
         return
     heading = [cell.lower() for cell in rows[0][1]]
-    columns = [next((heading.index(word) for word in words if word in heading), -1) for words in (SOURCES, TARGETS)]
-    third = next((heading.index(word) for word in LENGTHS if word in heading), -1)
-    has_heading = min(columns) >= 0 and columns[0] != columns[1]
-    if not has_heading:
-        columns, third = [0, 1], 2 if len(heading) > 2 else -1
+    columns, third, has_heading = [0, 1], 2 if len(heading) > 2 else -1, names_edges(heading)
+    if has_heading:
+        columns = [next(heading.index(word) for word in words if word in heading) for words in (SOURCES, TARGETS)]
+        third = next((heading.index(word) for word in LENGTHS if word in heading), -1)
     width = len(heading)
     if not has_heading and (not 2 <= width <= 3 or (width == 3 and not _is_number(heading[2]))):
         raise FileFormatError(

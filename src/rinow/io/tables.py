@@ -25,6 +25,7 @@ __all__ = [
     "TABLE_SUFFIXES",
     "TEXT",
     "check_tables",
+    "heading_of",
     "numbers_of_text",
     "read_points",
     "stored_table",
@@ -111,6 +112,17 @@ def text_of(file: Path) -> bytes:
         if text.startswith(mark):
             text = text.decode(encoding, errors="replace").encode()
     return text.replace(b"\r", b"\n")
+
+
+def heading_of(file: Path) -> list[str]:
+    """The cells of the first line of a text file that is no comment, in small letters; none if one is a number."""
+    if not file.is_file():
+        return []
+    lines = (line for line in text_of(file).split(b"\n") if line.strip() and not line.lstrip().startswith(b"#"))
+    first = next(lines, b"").decode("utf-8", errors="replace").strip(" ")
+    mark = next((mark for mark in ";\t," if mark in first), " ")
+    cells = [cell.strip().lower() for cell in next(csv.reader([first], delimiter=mark, skipinitialspace=True), [])]
+    return [] if any(_is_number(cell.encode()) for cell in cells) else cells
 
 
 def numbers_of_text(text: bytes) -> Floats:
