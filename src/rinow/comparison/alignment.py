@@ -28,8 +28,9 @@ Indices = NDArray[np.intp]
 DIMENSIONS, SMALL_SPREAD = 3, 0.05
 """Most dimensions, and share of the largest variance from which an axis counts."""
 
-DENSE = 500
-"""Points of a space up to which all of its matrix is transformed; of larger ones eigenvalues come by iteration."""
+DENSE = 100
+"""Points of a space up to which all of its matrix is transformed; of larger ones eigenvalues come by iteration, which
+is faster, looks at the clock, and waits for other threads less often: on a busy machine that took seconds."""
 
 PLACED = 2e7
 """Distances of spaces that are placed in a second: nothing is begun for which the time does not suffice."""
