@@ -115,3 +115,25 @@ def test_pairs_of_compared_spaces_have_their_labels(tmp_path, monkeypatch, capsy
     assert rows[0] == ["a", "b", "label_a"]
     assert sorted((int(b), name) for _, b, name in rows[1:]) == list(enumerate(reversed(NAMES)))
     assert rinow.gromov_hausdorff(D, D[::-1, ::-1]).exact
+
+
+def test_a_net_of_a_table_of_distances(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("A.csv").write_text(text(D, head=["", *NAMES]), encoding="utf-8")
+    words = "net A.csv --distances --size 3 --start 1 -o net.csv -o net.npz --unit km --json"
+    assert main(words.split()) == 0
+    record = json.loads(capsys.readouterr().out)
+    expected = rinow.farthest_point_net(rinow.MetricSpace(D), size=3, start=1)
+    assert record["indices"] == expected.indices.tolist()
+    assert record["covering_radius"] == expected.covering_radius
+    assert "surface_radius" not in record
+    with open("net.csv", encoding="utf-8") as file:
+        rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    assert rows[0] == ["index", "label", "covering_radius"]
+    assert [row[1] for row in rows[1:]] == [NAMES[i] for i in expected.indices]
+    with np.load("net.npz") as columns:
+        np.testing.assert_array_equal(columns["covering_radius"], expected.radii)
+    assert main("net A.csv --distances --size 3 -o net.ply".split()) == 1
+    assert "net.ply has neither suffix .csv nor .npz" in capsys.readouterr().err
+    assert main("net A.csv --size 3".split()) == 1
+    assert "A.csv has no faces; geodesic distances need a mesh; add --distances" in capsys.readouterr().err
