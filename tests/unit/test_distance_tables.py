@@ -93,7 +93,7 @@ def test_labels_must_be_as_many_as_points(tmp_path):
 def test_the_shipped_table_of_cities_is_read_and_its_labels_are_kept(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["curvature", str(CITIES), "--distances"]) == 1
-    assert "by 5.2e-05 of the largest distance; repair" in capsys.readouterr().err
+    assert "; that is 5.2e-05 of the largest distance too much: repair" in capsys.readouterr().err
     words = [str(CITIES), "--distances", "--rtol", "1e-4", "-o", "out.csv", "-o", "out.npz", "--unit", "km"]
     assert main(["curvature", *words]) == 0
     with open("out.csv", encoding="utf-8") as file:
