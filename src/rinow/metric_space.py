@@ -278,7 +278,7 @@ def _check_triangle_inequality(D: Floats, rtol: float) -> None:
         k = int((D[i] + D[j]).argmin())
         raise NotAMetricError(
             f"distances[{i}, {j}] = {D[i, j]:.17g} exceeds distances[{i}, {k}] + distances[{k}, {j}] = "
-            f"{D[i, k] + D[k, j]:.17g}; that is {excesses.max() / D.max():.2g} of the largest distance too much: repair "
-            "the triangle inequality (shortest paths do) or raise rtol.",
+            f"{D[i, k] + D[k, j]:.17g}; that is {excesses.max() / D.max():.2g} of the largest distance too much: "
+            "repair the triangle inequality (shortest paths do) or raise rtol.",
             witness=(i, k, j),
         )
