@@ -42,6 +42,18 @@ def test_meshlab_shows_the_chosen_field_of_ply_as_quality(tmp_path):
     assert json.loads(out.splitlines()[-1]) == FIELDS["mean"].tolist()
 
 
+def test_rinow_is_quiet_beside_libraries_of_threads_of_others():
+    """Numba warns of an old TBB, which pymeshlab brings along, and of which rinow makes no use."""
+    if find_spec("pymeshlab") is None:
+        pytest.skip("needs pymeshlab")
+    program = (
+        "import pymeshlab, rinow, trimesh; ball = trimesh.creation.icosphere(2); rinow.surface_curvature(ball); "
+        "rinow.farthest_point_net(ball, size=3); rinow.geodesic_distances(ball, [0, 1])"
+    )
+    run = subprocess.run([sys.executable, "-W", "error", "-c", program], capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stderr) == (0, "")
+
+
 def test_trimesh_reads_all_fields_of_ply(tmp_path):
     rinow.write_mesh(tmp_path / "a.ply", (POINTS, FACES), FIELDS, quality="mean")
     mesh = trimesh.load(tmp_path / "a.ply", process=False)
