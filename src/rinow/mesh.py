@@ -283,7 +283,7 @@ def as_mesh(mesh: Any) -> TriangleMesh | IntrinsicMesh:
         return TriangleMesh(np.asarray(mesh.points), np.asarray(mesh.regular_faces))
     raise InvalidMeshError(
         f"mesh is a {type(mesh).__name__}; give a TriangleMesh, an IntrinsicMesh, a (V, F) pair or an object with "
-        "vertices and faces (files are read by read_mesh)."
+        "vertices and faces (files are read by read_mesh; a scene of trimesh has to_mesh())."
     )
 
 

@@ -139,3 +139,13 @@ def test_damaged_files_are_named(tmp_path, monkeypatch, capsys, name, content, s
     (tmp_path / name).write_bytes(content)
     assert main(["graph", name]) == 1
     assert sentence in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["info", "curvature"])
+def test_a_graph_is_no_mesh(tmp_path, monkeypatch, capsys, command):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.edgelist").write_text("0 1\n1 2\n")
+    assert main([command, "a.edgelist"]) == 1
+    assert capsys.readouterr().err == (
+        "rinow: a.edgelist holds a graph, no mesh; rinow graph computes the curvature of a graph.\n"
+    )

@@ -72,3 +72,10 @@ def test_meshes_of_nilearn_are_meshes():
         found.gaussian, rinow.surface_curvature((POINTS, FACES), method="angle_defect").gaussian
     )
     assert rinow.geodesic_distances(mesh, 0).shape == (1, 4)
+
+
+def test_a_scene_is_told_how_to_become_a_mesh():
+    scene = trimesh.Scene([trimesh.creation.box()])
+    with pytest.raises(rinow.InvalidMeshError, match=r"a scene of trimesh has to_mesh\(\)"):
+        rinow.surface_curvature(scene)
+    assert len(rinow.surface_curvature(scene.to_mesh(), method="angle_defect").gaussian) == 8

@@ -72,6 +72,9 @@ _FORMATS = {
     ".curv": _CURV,
 }
 
+GRAPHS = (".graphml", ".gml", ".gexf", ".edges", ".edgelist")
+"""Suffixes of graphs, which are no meshes."""
+
 
 def read_mesh(path: PathLike) -> TriangleMesh:
     """Read a triangle mesh from a file.
@@ -284,5 +287,7 @@ def _format_of(path: Path, *, sniff: bool = False) -> _Format:
         raise FileFormatError(f"{path} is a folder; give the name of a mesh file.")
     if sniff and os.path.isfile(path) and not os.path.getsize(path):
         raise FileFormatError(f"{path}: the file is empty; export it again.")
+    if sniff and name.endswith(GRAPHS):
+        raise FileFormatError(f"{path} holds a graph, no mesh; rinow graph computes the curvature of a graph.")
     cure = "convert the mesh to PLY" if sniff else "choose one of these"
     raise FileFormatError(f"{path} has no suffix of a known mesh format ({' '.join(_FORMATS)}); {cure}.")
