@@ -247,8 +247,7 @@ class TriangleMesh(PolyhedralSurface):
 def _as_mapping(vertex_data: Any) -> Mapping[str, ArrayLike]:
     if isinstance(vertex_data, Mapping | None):
         return vertex_data or {}
-    kind = type(vertex_data).__name__
-    raise InvalidInputError(f"vertex_data is of type {kind}; give a mapping of names to arrays.")
+    raise InvalidInputError(f"vertex_data is of type {type(vertex_data).__name__}; give a mapping of names to arrays.")
 
 
 def is_mesh_like(value: Any) -> bool:
@@ -261,7 +260,8 @@ def is_mesh_like(value: Any) -> bool:
 def as_mesh(mesh: Any) -> TriangleMesh | IntrinsicMesh:
     """The mesh meant by a mesh, a ``(V, F)`` pair, or an object with vertices and faces.
 
-    Objects have ``.vertices`` and ``.faces`` (trimesh), or ``.points`` and ``.regular_faces`` (pyvista, triangulated).
+    Objects have ``.vertices`` (trimesh) or ``.coordinates`` (nilearn) and ``.faces``, or ``.points`` and
+    ``.regular_faces`` (pyvista, triangulated).
 
     Raises
     ------
@@ -271,18 +271,19 @@ def as_mesh(mesh: Any) -> TriangleMesh | IntrinsicMesh:
     if isinstance(mesh, TriangleMesh | IntrinsicMesh):
         return mesh
     if isinstance(mesh, tuple | list):
-        if len(mesh) != 2:
-            raise InvalidMeshError(f"mesh is a {type(mesh).__name__} of {len(mesh)} items; give the pair (V, F).")
-        return TriangleMesh(mesh[0], mesh[1])
-    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
-        return TriangleMesh(np.asarray(mesh.vertices), np.asarray(mesh.faces))
+        if len(mesh) == 2:
+            return TriangleMesh(mesh[0], mesh[1])
+        raise InvalidMeshError(f"mesh is a {type(mesh).__name__} of {len(mesh)} items; give the pair (V, F).")
+    for name in ("vertices", "coordinates"):
+        if hasattr(mesh, name) and hasattr(mesh, "faces"):
+            return TriangleMesh(np.asarray(getattr(mesh, name)), np.asarray(mesh.faces))
     if hasattr(mesh, "points") and hasattr(mesh, "regular_faces"):
         if not mesh.is_all_triangles:
             raise InvalidMeshError("mesh is a PolyData with polygons; call its triangulate() first.")
         return TriangleMesh(np.asarray(mesh.points), np.asarray(mesh.regular_faces))
     raise InvalidMeshError(
         f"mesh is a {type(mesh).__name__}; give a TriangleMesh, an IntrinsicMesh, a (V, F) pair or an object with "
-        "vertices and faces (files are read by read_mesh)."
+        "vertices and faces (files are read by read_mesh; a scene of trimesh has to_mesh())."
     )
 
 
@@ -294,7 +295,6 @@ def as_triangle_mesh(mesh: Any) -> TriangleMesh:
     InvalidMeshError
         If `mesh` has edge lengths only.
     """
-    result = as_mesh(mesh)
-    if isinstance(result, IntrinsicMesh):
+    if isinstance(result := as_mesh(mesh), IntrinsicMesh):
         raise InvalidMeshError("mesh is an IntrinsicMesh, but positions are needed; give a TriangleMesh.")
     return result

@@ -175,7 +175,7 @@ class MetricSpace:
 
         Parameters
         ----------
-        graph : scipy sparse matrix of shape (n, n), or networkx graph
+        graph : scipy sparse matrix of shape (n, n), or networkx or igraph graph
             The entries, or the edge attribute "weight" (1 where it is missing), are the lengths of the edges, at
             least 0; a stored 0 is an edge too.  Every edge leads both ways; of parallel or opposite edges the
             shortest counts.
@@ -278,6 +278,7 @@ def _check_triangle_inequality(D: Floats, rtol: float) -> None:
         k = int((D[i] + D[j]).argmin())
         raise NotAMetricError(
             f"distances[{i}, {j}] = {D[i, j]:.17g} exceeds distances[{i}, {k}] + distances[{k}, {j}] = "
-            f"{D[i, k] + D[k, j]:.17g}; repair the triangle inequality (shortest paths do) or raise rtol.",
+            f"{D[i, k] + D[k, j]:.17g}; that is {excesses.max() / D.max():.2g} of the largest distance too much: "
+            "repair the triangle inequality (shortest paths do) or raise rtol.",
             witness=(i, k, j),
         )

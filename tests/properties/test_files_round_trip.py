@@ -74,6 +74,15 @@ def test_geometry_survives_in_text(folder, name, mesh):
     np.testing.assert_array_equal(back.faces, mesh[1])
 
 
+@given(mesh=meshes(st.floats(allow_nan=False, allow_infinity=False)))
+@settings(max_examples=40)
+def test_geometry_survives_in_3mf(folder, mesh):
+    rinow.write_mesh(folder / "c.3mf", mesh)
+    back = rinow.read_mesh(folder / "c.3mf")
+    assert_same(back.vertices, mesh[0])
+    np.testing.assert_array_equal(back.faces, mesh[1])
+
+
 @pytest.mark.parametrize("name", ["c.glb", "lh.white"])
 @given(mesh=meshes(st.floats(width=32, allow_nan=False, allow_infinity=False)))
 @settings(max_examples=40)
@@ -105,6 +114,7 @@ SOURCES = [
     "e.npz",
     "e.surf.gii",
     "e.glb",
+    "e.3mf",
     "lh.pial",
     "e.vtk",
 ]

@@ -278,3 +278,47 @@ def test_a_thin_triangle_keeps_its_curvature():
     height = 1e-5
     graph.add_weighted_edges_from([(0, 1, math.hypot(1, height)), (1, 2, math.hypot(1, height)), (0, 2, 2.0)])
     assert rinow.graph_curvature(graph, kind="menger").edges == pytest.approx(np.full(3, 2e-5), rel=1e-5)
+
+
+class Igraph:
+    """What rinow asks of a graph of igraph."""
+
+    def __init__(self, n, edges, weights=None, *, directed=False):
+        self._edges, self._n, self._directed = edges, n, directed
+        self.es = self
+        self._weights = weights
+
+    def vcount(self):
+        return self._n
+
+    def get_edgelist(self):
+        return self._edges
+
+    def is_directed(self):
+        return self._directed
+
+    def attributes(self):
+        return [] if self._weights is None else ["weight"]
+
+    def __getitem__(self, name):
+        return {"weight": self._weights}[name]
+
+
+@pytest.mark.parametrize("directed", [False, True])
+@pytest.mark.parametrize("weighted", [False, True])
+def test_graphs_of_igraph(directed, weighted):
+    graph = random_graph(6, directed=directed, weighted=weighted)
+    weights = [data.get("weight") for _, _, data in graph.edges(data=True)]
+    other = Igraph(len(graph), list(graph.edges), weights if weighted else None, directed=directed)
+    for kind in ("wald", "menger", "haantjes"):
+        expected, found = (rinow.graph_curvature(g, kind=kind) for g in (graph, other))
+        np.testing.assert_array_equal(found.nodes, expected.nodes)
+        np.testing.assert_array_equal(found.edge_index, expected.edge_index)
+    assert len(rinow.graph_curvature(Igraph(3, []), kind="menger").nodes) == 3
+
+
+def test_a_wrong_length_is_named_by_the_labels_of_its_ends():
+    graph = nx.Graph([("a", "b"), ("b", "c")])
+    graph["b"]["c"]["weight"] = -2
+    with pytest.raises(InvalidInputError, match=r"graph\['b', 'c'\] = -2.0 is not a length"):
+        rinow.graph_curvature(graph)

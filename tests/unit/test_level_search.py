@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import pdist, squareform
 
-from clocks import SLOW, unlimited
+from clocks import SLOW, Looks, unlimited
 from metric_shapes import hops, polygon, random_space
 from naive import correspondences as naive
 from rinow import distortion
-from rinow.comparison import steps
+from rinow.comparison import level_search, steps
 from rinow.comparison.clock import Clock
 from rinow.comparison.engine import Engine
 from rinow.comparison.gromov_hausdorff import first_interval
@@ -18,6 +18,7 @@ from rinow.comparison.level_search import LevelSearch
 from rinow.comparison.levels import Levels
 from rinow.comparison.satisfiability import Satisfiability
 from rinow.comparison.symmetry import isometries
+from rinow.kernels import level_search as kernels
 
 
 def test_levels_are_the_differences_of_distances():
@@ -104,3 +105,20 @@ def test_search_at_one_level_agrees_with_clause_learning():
                 assert solver.run(clock)[0] == refuted
             decided.add(refuted)
     assert decided == {True, False}
+
+
+def test_a_slice_of_the_search_is_as_long_for_large_spaces(monkeypatch):
+    """Sets of hundreds of points are several words; a slice counted them as one, and took seconds."""
+    rng = np.random.default_rng(7)
+    spaces = []
+    for n in (200, 190):
+        D = rng.integers(5, 11, size=(n, n)).astype(float)
+        D = np.minimum(D, D.T)
+        np.fill_diagonal(D, 0.0)
+        spaces.append(D)
+    identities = tuple(isometries(D, Clock(0.0)) for D in spaces)
+    search = LevelSearch(Engine(*spaces), 4.0, identities)
+    # After the first decision each of the 390 rows and columns is held against all others: more words than a slice.
+    monkeypatch.setattr(level_search, "SLICE", 390 * 190 * 3 - 1)
+    search.run(Looks(1))
+    assert search._progress[kernels.NODES] == 1

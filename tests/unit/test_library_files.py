@@ -61,6 +61,75 @@ def test_companions_of_others_are_named_by_their_file(tmp_path):
     assert rinow.read_mesh(tmp_path / "a.surf.gii").vertex_data["sulc"].tolist() == [0, 1, 2, 3]
 
 
+def test_the_command_line_writes_gifti_that_every_reader_takes(tmp_path):
+    """Connectome Workbench reads no double precision, and asks for the hemisphere."""
+    import nibabel
+
+    from rinow.cli.main import main
+
+    points = np.array([[0.1, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    rinow.write_mesh(tmp_path / "in.ply", (points, F))
+    assert main(["curvature", str(tmp_path / "in.ply"), "-o", str(tmp_path / "lh.pial.surf.gii")]) == 0
+    files = sorted(tmp_path.glob("*.gii"))
+    assert len(files) > 4
+    for file in files:
+        image = nibabel.load(file)
+        assert image.meta["AnatomicalStructurePrimary"] == "CortexLeft"
+        assert {array.data.dtype.str[1:] for array in image.darrays} <= {"u1", "i4", "f4"}
+    back = rinow.read_mesh(tmp_path / "lh.pial.surf.gii")
+    np.testing.assert_array_equal(back.vertices, points.astype(np.float32))
+    np.testing.assert_array_equal(back.faces, F)
+
+
+@pytest.mark.parametrize(
+    ("name", "side"),
+    [
+        ("100307.L.white.surf.gii", "CortexLeft"),
+        ("sub-01_hemi-R_pial.surf.gii", "CortexRight"),
+        ("rh.gii", "CortexRight"),
+        ("L.R.gii", None),
+        ("Lisa.gii", None),
+    ],
+)
+def test_the_name_tells_the_hemisphere(tmp_path, name, side):
+    import nibabel
+
+    rinow.write_mesh(tmp_path / name, (V, F))
+    image = nibabel.load(tmp_path / name)
+    assert image.meta.get("AnatomicalStructurePrimary") == side
+    assert image.darrays[0].meta.get("AnatomicalStructurePrimary") == side
+
+
+def test_positions_of_single_precision_stay_so_in_gifti(tmp_path):
+    import nibabel
+
+    for points, kind in ((V, np.float32), (V + 1e-9, np.float64)):
+        notes = rinow.write_mesh(tmp_path / "a.gii", (points, F))
+        assert nibabel.load(tmp_path / "a.gii").darrays[0].data.dtype == kind
+        assert ("double" in notes[0]) == (kind == np.float64)
+        np.testing.assert_array_equal(rinow.read_mesh(tmp_path / "a.gii").vertices, points)
+
+
+def test_freesurfer_reads_a_field_as_curv(tmp_path):
+    from nibabel.freesurfer.io import read_morph_data
+
+    fields = {"gaussian": K, "mean": -K, "direction": V}
+    for name, field in (("lh.curv", "gaussian"), ("lh.white.mean.curv", "mean"), ("rh.MEAN.curv", "gaussian")):
+        notes = rinow.write_mesh(tmp_path / name, (V, F), fields, units={"mean": "H in 1/mm"}, quality="gaussian")
+        with np.errstate(over="ignore"):
+            np.testing.assert_array_equal(read_morph_data(tmp_path / name), fields[field].astype(np.float32))
+        meaning = "H in 1/mm" if field == "mean" else "gaussian"
+        assert notes == (f"{name} holds one field, in single precision: {meaning}.",)
+    rinow.write_mesh(tmp_path / "rh.curv", (V, F), {"only": K})
+    with pytest.raises(InvalidInputError, match="one number per vertex; name one of gaussian, mean"):
+        rinow.write_mesh(tmp_path / "a.curv", (V, F), fields)
+    with pytest.raises(InvalidInputError, match="one number per vertex"):
+        rinow.write_mesh(tmp_path / "a.direction.curv", (V, F), fields, quality="mean")
+    assert not (tmp_path / "a.curv").exists()
+    with pytest.raises(FileFormatError, match=r"rh\.curv: a curv file holds a number per vertex and no surface; give"):
+        rinow.read_mesh(tmp_path / "rh.curv")
+
+
 def test_fields_with_one_file_name_are_refused(tmp_path):
     with pytest.raises(InvalidInputError, match="make the same file name"):
         rinow.write_mesh(tmp_path / "a.surf.gii", (V, F), {"a b": K, "a_b": K})

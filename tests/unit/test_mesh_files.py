@@ -35,7 +35,7 @@ def test_an_unknown_suffix_names_the_known_ones(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "suffix", [".ply", ".obj", ".stl", ".off", ".glb", ".npz", ".vtp", ".vtk", ".gii", ".white", ".none"]
+    "suffix", [".ply", ".obj", ".stl", ".off", ".glb", ".3mf", ".npz", ".vtp", ".vtk", ".gii", ".white", ".none"]
 )
 def test_missing_empty_and_folder(tmp_path, suffix):
     missing, empty, folder = (tmp_path / f"{name}{suffix}" for name in ("missing", "empty", "folder"))
@@ -103,7 +103,7 @@ def test_units_are_in_every_file_with_fields(tmp_path):
     assert UNITS["gaussian"] in (tmp_path / "a.gaussian.shape.gii").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", ["a.obj", "a.off", "a.stl", "a.glb", "lh.white"])
+@pytest.mark.parametrize("name", ["a.obj", "a.off", "a.stl", "a.glb", "a.3mf", "lh.white"])
 def test_formats_without_fields_say_what_they_left_out(tmp_path, name):
     notes = rinow.write_mesh(tmp_path / name, (V, F), FIELDS)
     assert "geometry only; left out: gaussian, mean, status" in notes[0]
@@ -170,7 +170,7 @@ def test_a_link_stays_and_its_target_is_replaced(tmp_path):
     assert rinow.read_mesh(tmp_path / "target.ply").n_faces == 4
 
 
-@pytest.mark.parametrize("suffix", [".ply", ".obj", ".stl", ".off", ".glb", ".npz", ".vtp", ".gii", ".white"])
+@pytest.mark.parametrize("suffix", [".ply", ".obj", ".stl", ".off", ".glb", ".3mf", ".npz", ".vtp", ".gii", ".white"])
 def test_unwritable_outputs(tmp_path, suffix):
     (tmp_path / f"folder{suffix}").mkdir()
     with pytest.raises(FileFormatError, match="is a folder"):

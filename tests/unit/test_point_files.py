@@ -93,3 +93,42 @@ def test_beside_semicolons_commas_are_decimal_marks(tmp_path, heading):
 def test_tables_of_spreadsheets_keep_their_first_row(tmp_path, encoding, heading):
     (tmp_path / "p.csv").write_text(f"{heading}1;2;3\n4;5;6\n", encoding=encoding)
     np.testing.assert_array_equal(read_points(tmp_path / "p.csv"), [[1, 2, 3], [4, 5, 6]])
+
+
+@pytest.mark.parametrize(
+    ("heading", "columns"),
+    [
+        ("index,x,y,z,covering_radius", [1, 2, 3]),  # as rinow net writes it
+        ("# a comment\nZ;X;Y;w;v", [1, 2, 0]),
+        ('"Gauss","Points:0","Points:1","Points:2","k"', [1, 2, 3]),  # as ParaView does
+        ("k\tPoints_0\tPoints_1\tPoints_2\tm", [1, 2, 3]),
+        (",x,y,z,a", [1, 2, 3]),  # as pandas does
+        ("a,b,c,d,e", [0, 1, 2]),
+        ("x,y,z", [0, 1, 2]),  # of other columns than the rows
+    ],
+)
+def test_a_heading_tells_the_coordinates(tmp_path, heading, columns):
+    table = np.random.default_rng(4).normal(size=(9, 5))
+    mark = next(mark for mark in ";\t," if mark in heading)
+    rows = "\n".join(mark.join(map(repr, row)) for row in table.tolist())
+    (tmp_path / "p.csv").write_text(f"{heading}\n{rows}\n", encoding="utf-8")
+    points, (note,) = read_cloud(tmp_path / "p.csv")
+    np.testing.assert_array_equal(points, table[:, columns])
+    words = "first three" if columns == [0, 1, 2] else f"columns {', '.join(str(c + 1) for c in columns)}"
+    assert note == f"The rows have 5 numbers; the {words} are taken for x, y and z."
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ("source,target,weight\n0,1,2.5\n1,2,1\n2,0,1\n", "p.csv holds edges of a graph, no points; rinow graph"),
+        (",a,b,c,d\na,0,1,1,1\nb,1,0,1,1\nc,1,1,0,1\nd,1,1,1,0\n", "p.csv holds the distances of 4 points, not their"),
+        (",a,b\na,0,1\nb,1,2\n", "line 2 has 'a' where a number belongs"),
+    ],
+)
+@pytest.mark.parametrize("command", ["info", "curvature"])
+def test_tables_of_other_things_are_no_points(tmp_path, monkeypatch, capsys, command, content, sentence):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "p.csv").write_text(content, encoding="utf-8")
+    assert main([command, "p.csv"]) == 1
+    assert sentence in capsys.readouterr().err

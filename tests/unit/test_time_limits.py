@@ -9,12 +9,15 @@ from scipy.spatial.distance import pdist, squareform
 
 import rinow
 from clocks import Looks
+from rinow.comparison import alignment, large_work, lipschitz, steps
 from rinow.comparison import clock as clock_module
 from rinow.comparison import engine as engine_module
-from rinow.comparison import large_work, lipschitz, steps
+from rinow.comparison.affine_bijections import offer_affine_bijections
+from rinow.comparison.alignment import align, coordinates
 from rinow.comparison.bounds import matching_bound
-from rinow.comparison.clock import Clock
+from rinow.comparison.clock import Clock, TimeOver
 from rinow.comparison.engine import BIJECTION, Engine, Search
+from rinow.comparison.gromov_hausdorff import first_interval
 from rinow.comparison.interval import Interval
 from rinow.comparison.large_work import Work
 from rinow.comparison.satisfiability import Satisfiability
@@ -90,6 +93,37 @@ def test_completion_of_maps_comes_in_blocks(monkeypatch):
     calls.clear()
     assert Work(X, Y).completed(partners, Looks(2)) is None
     assert len(calls) == 2
+
+
+def test_first_dives_come_in_parts(monkeypatch):
+    """A dive for a net of lists that hold most points took seconds of its own: of trees with 2,000 nodes, 5."""
+    X, Y = spaces(60, 50)
+    level = 0.5
+    whole, promising = Work(X, Y).begun(level, Clock(math.inf))
+    monkeypatch.setattr(large_work, "EXAMINED", dives.TRIALS * large_work.TRIES * 110 * 60 * 2)
+    calls = recorded(monkeypatch, dives, "many_descents", lambda a: a[4])
+    again, still_promising = Work(X, Y).begun(level, Clock(math.inf))
+    assert len(calls) > 4
+    assert calls[0] >= 2  # lists are shorter than all points
+    assert (again == whole).all()
+    assert still_promising == promising
+    assert max(looks for looks in range(12) if Work(X, Y).begun(level, Looks(looks)) is None) > 4
+
+
+def test_places_of_points_stop_with_the_clock():
+    """Eigenvalues that lie close together take hundreds of rounds."""
+    rng = np.random.default_rng(3)
+    D = rng.integers(5, 11, size=(alignment.DENSE + 1,) * 2).astype(float)
+    D = np.minimum(D, D.T)
+    np.fill_diagonal(D, 0.0)
+    with pytest.raises(TimeOver):
+        coordinates(D, Looks(30))
+    E = D[::-1, ::-1].copy()
+    interval = first_interval(D, E, 0.0)
+    before = interval.upper
+    for offer in (align, offer_affine_bijections):
+        offer(D, E, interval, Looks(30))
+        assert interval.upper == before
 
 
 def test_isometries_stop_with_the_clock():

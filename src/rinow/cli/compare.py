@@ -5,15 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rinow._version import __version__
 from rinow.cli._arguments import Flag, Outputs
 from rinow.cli._terminal import print_counts, print_json, print_notes, working
 from rinow.comparison.hausdorff import HausdorffDistance
 from rinow.comparison.surfaces import check_connected
 from rinow.errors import FileFormatError, InvalidInputError, naming
-from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.distance_tables import read_distances
+from rinow.io.mesh_files import check_outputs, read_mesh, write_result
 from rinow.io.point_files import check_has_faces
-from rinow.io.tables import check_tables, read_distances, read_points, write_columns
+from rinow.io.tables import check_tables, read_points, write_columns
 from rinow.mesh import TriangleMesh
 from rinow.metric_space import MetricSpace
 from rinow.study.comparison import ComparisonStudy, Kind, Metric, compare_shapes
@@ -73,11 +76,13 @@ def compare(
     kind: Kind = "points" if points else "distances" if distances else "surfaces"
     distance: Metric = metric or ("gromov-hausdorff" if distances else "hausdorff")
     _check_outputs(output, (a, b), kind, distance)
-    shapes: list[Any] = []
+    shapes, labels = list[Any](), list[tuple[str, ...]]()
     for name, path in (("A", a), ("B", b)):
         with working(f"reading {path.name}"):
             with naming(f"{name}: {path}"):
-                shapes.append(_read(path, kind, distance, rtol))
+                shape, names = _read(path, kind, distance, rtol)
+                shapes.append(shape)
+                labels.append(names)
     with working("comparing"):
         study = compare_shapes(
             *shapes,
@@ -89,7 +94,7 @@ def compare(
             unit=unit,
         )
     notes = [note for shape in shapes if isinstance(shape, TriangleMesh) for note in shape.notes]
-    notes += _write(output, study, shapes)
+    notes += _write(output, study, shapes, labels)
     if kind == "surfaces" and distance == "gromov-hausdorff":
         notes.append("distances on the surfaces are lengths of shortest paths along edges.")
     record = {"a": str(a), "b": str(b), **study.record()}
@@ -99,17 +104,18 @@ def compare(
         _print(record, notes)
 
 
-def _read(path: Path, kind: Kind, metric: Metric, rtol: float) -> Any:
-    """A shape of a kind that has a distance of this kind."""
+def _read(path: Path, kind: Kind, metric: Metric, rtol: float) -> tuple[Any, tuple[str, ...]]:
+    """A shape of a kind that has a distance of this kind, and the labels of its points, if any."""
     if kind == "points":
-        return read_points(path)
+        return read_points(path), ()
     if kind == "distances":
-        return MetricSpace(read_distances(path), rtol=rtol)
+        matrix, labels = read_distances(path)
+        return MetricSpace(matrix, rtol=rtol), labels
     check_has_faces(path, "add --points if its rows are points, --distances if it is a matrix of distances")
     mesh = read_mesh(path)
     if metric != "hausdorff":
         check_connected(mesh, every_vertex=metric == "lipschitz")
-    return mesh
+    return mesh, ()
 
 
 def _check_outputs(output: tuple[Path, ...], inputs: tuple[Path, Path], kind: Kind, metric: Metric) -> None:
@@ -126,13 +132,16 @@ def _is_table(path: Path, kind: Kind, metric: Metric) -> bool:
     return path.suffix.lower() == ".csv" or kind != "surfaces" or metric != "hausdorff"
 
 
-def _write(output: tuple[Path, ...], study: ComparisonStudy, shapes: list[Any]) -> list[str]:
+def _write(
+    output: tuple[Path, ...], study: ComparisonStudy, shapes: list[Any], labels: list[tuple[str, ...]]
+) -> list[str]:
     """What the outputs are for; returns what a format could not carry."""
     result, notes = study.result, list[str]()
     if not isinstance(result, HausdorffDistance):
         for path in output:
-            a, b = study.pairs().T
-            write_columns(path, {"a": a, "b": b}, "points of A and B that belong together in the upper bound")
+            columns: dict[str, Any] = dict(zip("ab", study.pairs().T, strict=True))
+            columns |= {f"label_{s}": np.array(n)[columns[s]] for s, n in zip("ab", labels, strict=True) if n}
+            write_columns(path, columns, "points of A and B that belong together in the upper bound")
         return notes
     sides = zip(output, shapes, (result.distances_a, result.distances_b), "BA", strict=False)
     for path, shape, values, other in sides:
@@ -142,7 +151,7 @@ def _write(output: tuple[Path, ...], study: ComparisonStudy, shapes: list[Any]) 
                 write_columns(path, {"distance": values}, meaning)
             else:
                 units = {"distance": meaning}
-                notes += write_mesh(path, shape, {"distance": values}, units=units, quality="distance")
+                notes += write_result(path, shape, {"distance": values}, units, "distance")
     return notes
 
 

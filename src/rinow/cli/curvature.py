@@ -11,9 +11,10 @@ from rinow._version import __version__
 from rinow.cli._arguments import Flag, Outputs
 from rinow.cli._terminal import print_json, print_notes, print_study, working
 from rinow.errors import InvalidInputError, naming
-from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.distance_tables import read_distances
+from rinow.io.mesh_files import check_outputs, read_mesh, write_result
 from rinow.io.point_files import check_point_outputs, holds_points, read_cloud, write_points
-from rinow.io.tables import check_tables, read_distances, write_columns
+from rinow.io.tables import check_tables, write_columns
 from rinow.metric_space import MetricSpace
 from rinow.study.features import FeatureStudy, study_features
 from rinow.study.points import PointStudy, point_counts, study_points
@@ -59,11 +60,13 @@ def curvature(
     Parameters
     ----------
     mesh
-        Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.  Points without faces: PLY, NPZ, NPY, or
-        text with x, y, z on each line (XYZ, CSV, TSV, TXT, DAT).  With --distances a square matrix as text, NPY or NPZ.
+        Mesh file: PLY, OBJ, STL, OFF, GLB, 3MF, GIFTI, FreeSurfer, VTP, VTK or NPZ.  Points without faces: PLY, NPZ,
+        NPY, or text with x, y, z on each line (XYZ, CSV, TSV, TXT, DAT).  With --distances a square matrix as text, NPY
+        or NPZ.
     output
-        File to write the mesh and its curvature to; may be repeated.  PLY, VTP, VTK, NPZ and GIFTI carry fields; points
-        are written as PLY, CSV or NPZ, points known by their distances as CSV or NPZ.
+        File to write the mesh and its curvature to; may be repeated.  PLY, VTP, VTK, NPZ and GIFTI carry fields;
+        lh.mean.curv holds one for FreeSurfer.  Points are written as PLY, CSV or NPZ, points known by their distances
+        as CSV or NPZ.
     method
         How to compute the curvature, for meshes; auto needs no setting.  sectional and lifted use positions; intrinsic,
         wald, robinson and angle_defect use edge lengths only and give the field gaussian only.
@@ -72,11 +75,11 @@ def curvature(
     radius
         Scale in the unit of length of the file; by default each method chooses its own.
     distances
-        The file holds all distances of some points, and nothing else is known of them.
+        The file holds all distances of some points, and nothing else is known of them but, perhaps, their labels.
     rtol
         Distances: how much the axioms of a metric may be broken, relative to the largest one.
     field
-        The scalar that becomes `quality` in PLY, and is drawn, in the report at first.
+        The scalar that becomes `quality` in PLY, fills a .curv file, and is drawn, in the report at first.
     picture
         PNG file to draw four views to.
     report
@@ -115,7 +118,7 @@ def curvature(
     with study.timed("writing"):
         for path in output:
             with working(f"writing {path.name}"):
-                notes += write_mesh(path, surface, study.vertex_data(field), units=study.units(), quality=field)
+                notes += write_result(path, surface, study.vertex_data(field), study.units(), field)
         Views(picture, report, up).write(study, features, field=field, title=mesh.name)
     if json:
         print_json(_record(mesh, study, mesh_counts(surface), field, outputs, notes))
@@ -180,13 +183,16 @@ def _curvature_of_distances(
     """The curvature at points known by their distances."""
     check_tables(output, inputs=[path])
     with working(f"reading {path.name}"), naming(str(path)):
-        space = MetricSpace(read_distances(path), rtol=rtol)
+        matrix, labels = read_distances(path)
+        space = MetricSpace(matrix, rtol=rtol)
     with working(f"curvature of {len(space):,} points"):
         study = study_space(space, radius=radius, unit=unit)
     fields, units = study.vertex_data(), study.units()
+    meaning = "; ".join(f"{name}: {units[name]}" for name in fields)
+    names = {"label": np.array(labels)} if labels else {}
     for target in output:
         with working(f"writing {target.name}"):
-            write_columns(target, fields, "; ".join(f"{name}: {units[name]}" for name in fields))
+            write_columns(target, names | fields, meaning)
     if json:
         print_json(_record(path, study, {"points": len(space)}, "gaussian", list(output), []))
     else:

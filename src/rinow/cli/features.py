@@ -9,7 +9,7 @@ from typing import Literal
 from rinow._version import __version__
 from rinow.cli._arguments import Flag, Outputs
 from rinow.cli._terminal import console, print_json, print_notes, working
-from rinow.io.mesh_files import check_outputs, read_mesh, write_mesh
+from rinow.io.mesh_files import check_outputs, read_mesh, write_result
 from rinow.io.point_files import check_has_faces
 from rinow.study.features import FIELDS, FeatureStudy, study_features
 from rinow.study.surface import mesh_counts
@@ -33,7 +33,7 @@ def features(
     Parameters
     ----------
     mesh
-        Mesh file: PLY, OBJ, STL, OFF, GLB, GIFTI, FreeSurfer, VTP, VTK or NPZ.
+        Mesh file: PLY, OBJ, STL, OFF, GLB, 3MF, GIFTI, FreeSurfer, VTP, VTK or NPZ.
     output
         File to write the mesh and its features to; may be repeated.  PLY, VTP, VTK, NPZ and GIFTI carry fields.
     picture
@@ -55,7 +55,7 @@ def features(
     notes = list(study.notes)
     for path in output:
         with working(f"writing {path.name}"):
-            notes += write_mesh(path, surface, study.vertex_data(), units=FIELDS, quality="crease_angle")
+            notes += write_result(path, surface, study.vertex_data(), FIELDS, "crease_angle")
     if picture:
         with working(f"drawing {picture.name}"):
             _write_picture(picture, study, title=mesh.name, up=up)

@@ -35,9 +35,11 @@ SUMMARIES = {
     "Convex with outward normal is positive.",
     "features": "Find the cone points, creases and corners of a mesh.\n\n"
     "Angles are in radians in files and JSON and in degrees in the table; convex is positive.",
+    "graph": "Compute the curvature of the nodes and edges of a graph by the lengths of its edges.",
     "quadruple": "Print all surfaces of constant curvature in which four points have the given distances.",
     "compare": "Bound the distance of two meshes, point sets or distance matrices from below and from above.",
-    "net": "Choose vertices of a mesh that are nowhere far from the rest, by exact geodesic distances.",
+    "net": "Choose vertices of a mesh that are nowhere far from the rest, by exact geodesic distances, or points by "
+    "theirs.",
 }
 """What the docstrings of the commands begin with, known without importing what they need."""
 for name, summary in SUMMARIES.items():

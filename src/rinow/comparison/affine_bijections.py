@@ -15,7 +15,7 @@ from scipy.spatial.distance import cdist
 
 from rinow.comparison.alignment import PLACED, coordinates
 from rinow.comparison.assignment import assigned
-from rinow.comparison.clock import Clock
+from rinow.comparison.clock import Clock, TimeOver
 from rinow.comparison.engine import BIJECTION, worst_of
 from rinow.comparison.interval import Interval
 
@@ -32,7 +32,10 @@ def offer_affine_bijections(DX: Floats, DY: Floats, interval: Interval, clock: C
     """Offer bijections that are near affine maps, as far as the time reaches."""
     if interval.closed or clock.over or DX.size + DY.size > PLACED * clock.left:
         return
-    P, Q = (coordinates(D / (float(D.max()) or 1.0)) for D in (DX, DY))
+    try:
+        P, Q = (coordinates(D / (float(D.max()) or 1.0), clock) for D in (DX, DY))
+    except TimeOver:
+        return
     d = min(P.shape[1], Q.shape[1])
     P, Q = _over_spreads(P[:, -d:]), _over_spreads(Q[:, -d:])
     tree, fits = KDTree(Q), list[tuple[float, Floats]]()

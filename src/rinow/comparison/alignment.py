@@ -7,15 +7,15 @@ map is measured with the distances.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
-from scipy.sparse.linalg import ArpackNoConvergence, eigsh
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 from scipy.spatial import KDTree
 
-from rinow.comparison.clock import Clock
+from rinow.comparison.clock import Clock, TimeOver
 from rinow.comparison.engine import RELATION, worst_of
 from rinow.comparison.interval import Interval
 from rinow.comparison.warm_start import graphs
@@ -28,8 +28,9 @@ Indices = NDArray[np.intp]
 DIMENSIONS, SMALL_SPREAD = 3, 0.05
 """Most dimensions, and share of the largest variance from which an axis counts."""
 
-DENSE = 500
-"""Points of a space up to which all of its matrix is transformed; of larger ones eigenvalues come by iteration."""
+DENSE = 100
+"""Points of a space up to which all of its matrix is transformed; of larger ones eigenvalues come by iteration, which
+is faster, looks at the clock, and waits for other threads less often: on a busy machine that took seconds."""
 
 PLACED = 2e7
 """Distances of spaces that are placed in a second: nothing is begun for which the time does not suffice."""
@@ -48,7 +49,10 @@ def align(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
     if clock.over or DX.size + DY.size > PLACED * clock.left:
         return
     scale = float(max(DX.max(), DY.max())) or 1.0  # squares neither overflow nor vanish
-    P, Q = coordinates(DX / scale), coordinates(DY / scale)
+    try:
+        P, Q = coordinates(DX / scale, clock), coordinates(DY / scale, clock)
+    except TimeOver:
+        return
     d = max(P.shape[1], Q.shape[1])
     P, Q = (np.pad(points, ((0, 0), (0, d - points.shape[1]))) for points in (P, Q))
     tree, (few_p, few_q) = KDTree(Q), (points[:: -(-len(points) // RANKED)] for points in (P, Q))
@@ -67,25 +71,38 @@ def align(DX: Floats, DY: Floats, interval: Interval, clock: Clock) -> None:
             return
 
 
-def coordinates(D: Floats) -> Floats:
-    """(n, d): coordinates around their mean by classical scaling, d at most 3."""
+def coordinates(D: Floats, clock: Clock | None = None) -> Floats:
+    """(n, d): coordinates around their mean by classical scaling, d at most 3.
+
+    Raises
+    ------
+    TimeOver
+        If the time is over before.
+    """
     products = D * D
     means = products.mean(axis=1)
     products -= means[:, None]
     products -= means - means.mean()
     products *= -0.5
-    values, vectors = _greatest_eigenvalues(products)
+    values, vectors = _greatest_eigenvalues(products, clock or Clock(np.inf))
     keep = values >= SMALL_SPREAD * values[-1]
     keep[-1] = True
     return vectors[:, keep] * np.sqrt(np.maximum(values[keep], 0.0))
 
 
-def _greatest_eigenvalues(products: Floats) -> tuple[Floats, Floats]:
+def _greatest_eigenvalues(products: Floats, clock: Clock) -> tuple[Floats, Floats]:
     """The greatest eigenvalues, ascending, and their vectors; of large matrices by iteration."""
     n = len(products)
+
+    def times(vector: Floats) -> Floats:
+        if clock.over:  # iterations may be hundreds where no few directions stand out
+            raise TimeOver
+        return products @ vector
+
     if n > DENSE:
         try:
-            found: Any = eigsh(products, DIMENSIONS, which="LA", v0=np.linspace(1.0, 2.0, n))
+            operator = cast(Any, LinearOperator)((n, n), matvec=times, dtype=products.dtype)
+            found: Any = eigsh(operator, DIMENSIONS, which="LA", v0=np.linspace(1.0, 2.0, n))
             return found
         except ArpackNoConvergence:
             pass  # eigenvalues that lie close together, of a space that fits nowhere

@@ -7,7 +7,11 @@ import time
 from rinow._arrays import as_number
 from rinow.errors import InvalidInputError
 
-__all__ = ["Clock"]
+__all__ = ["Clock", "TimeOver"]
+
+
+class TimeOver(Exception):  # noqa: N818 - no error: who set the limit goes on with what there is
+    """Ends the iteration of a library that has no limit of its own."""
 
 
 class Clock:

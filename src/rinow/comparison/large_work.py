@@ -98,15 +98,22 @@ class Work:
             return None
         k, t, most = len(places), np.float32(level / self.scale), int(MOST_ORPHANS * len(places))
         lists, counts, undecided = self._room
+        lists[:], counts[:] = self._lists[:k], self._counts
         partners = np.full((TRIES, n_points), ABSENT)
         partners[:, places] = UNDECIDED
         weights, numbers = self._rng.uniform(1.0, 2.0, (TRIES, n_points)), np.zeros((TRIES, 2), np.int64)
         weights[np.arange(TRIES), self._rng.choice(places, TRIES)] = FIRST
         random = self._rng.integers(1, 1 << 63, size=(TRIES, 1)).astype(np.uint64)
-        dive_kernels.many_dives(
-            self.X, self.Y, places, self._lists[:k], self._counts, t, most, lists, counts, undecided, partners, weights,
-            random, numbers,
-        )  # fmt: skip
+        for dive in zip(lists, counts, undecided, partners, weights, random, numbers, strict=True):
+            dive_kernels.begin(dive_kernels.Dive(self.X, self.Y, places, *dive))
+        on = np.ones(TRIES, np.bool_)
+        while on.any():
+            if clock.over:
+                return None
+            step = max(1, EXAMINED // (dive_kernels.TRIALS * int(counts[on].sum()) + 1))
+            dive_kernels.many_descents(
+                self.X, self.Y, places, t, step, most, lists, counts, undecided, partners, weights, random, numbers, on
+            )
         orphans, still_open = numbers.T
         best = np.lexsort((orphans, still_open))[0]
         partners = partners[best]

@@ -21,7 +21,7 @@ FIRST_LIMIT = 500
 """Nodes of a search before its first restart; each run is half as long again."""
 
 SLICE = 30_000_000
-"""Sets compared between two looks at the clock: some tenths of a second."""
+"""Words of sets compared between two looks at the clock: some tenths of a second at most."""
 
 
 class LevelSearch:

@@ -63,7 +63,7 @@ def graph_curvature(
 
     Parameters
     ----------
-    graph : scipy sparse matrix of shape (n, n), or networkx graph
+    graph : scipy sparse matrix of shape (n, n), or networkx or igraph graph
         The entries, or the edge attribute "weight" (1 where it is missing), are the lengths of the edges.  Loops
         and edges of infinite length are left out; of parallel edges the shortest counts.
     kind : {"wald", "menger", "haantjes"}, optional
@@ -73,7 +73,7 @@ def graph_curvature(
     radius : float, optional
         Radius of the ball for "wald", in the unit of the lengths; by default the least ball with 200 nodes.
     directed : bool, optional
-        Whether edges lead one way; by default as the networkx graph says, and not for a matrix.  "wald" needs a
+        Whether edges lead one way; by default as the graph says, and not for a matrix.  "wald" needs a
         symmetric distance, and lets every edge lead both ways.
     weighted : bool, optional
         Whether the lengths count.  By default they do unless all of them are 1; without lengths they are taken as 1.

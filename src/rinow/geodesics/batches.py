@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from rinow.errors import InvalidMeshError
 from rinow.geodesics.unfolding import UnfoldedMesh
 from rinow.kernels import geodesic_rows
+from rinow.kernels._parallel import number_of_threads
 from rinow.kernels.geodesic_balls import new_balls
 
 __all__ = ["ball_rows", "distance_rows"]
@@ -50,7 +50,7 @@ def distance_rows(u: UnfoldedMesh, sources: Indices, room: int = 0) -> Floats:
     room = max(room, _first_room(u))
     out = np.full((len(sources), len(u.order)), np.inf)
     status = np.empty(len(sources), np.int8)
-    scratch = new_balls(max(min(numba.get_num_threads(), len(sources)), 1), len(u.order), room)
+    scratch = new_balls(max(min(number_of_threads(), len(sources)), 1), len(u.order), room)
     queries = u.rank[sources], np.full(len(sources), np.inf)
     geodesic_rows.rows_of_sources(u.surface, queries, *scratch, (u.order, u.unit), out, status)
     late = np.flatnonzero(status != geodesic_rows.DONE)
@@ -107,7 +107,7 @@ def _run(
     u: UnfoldedMesh, chosen: Indices, queries: tuple[Indices, Floats], size: _Size, with_directions: bool
 ) -> _Batch:
     """Compute a batch; some sources may lack space or room."""
-    n, n_parts = len(chosen), numba.get_num_threads()
+    n, n_parts = len(chosen), number_of_threads()
     deal = max(1, min(_BLOCK, n // (4 * n_parts))), n_parts
     space = n_parts, size.capacity
     arenas = np.empty(space, np.int32), np.empty(space), np.empty(space if with_directions else (n_parts, 0))

@@ -1,4 +1,4 @@
-"""FreeSurfer's surface files, through nibabel."""
+"""FreeSurfer's files of surfaces and of numbers at their vertices, through nibabel."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from rinow.errors import FileFormatError
+from rinow.errors import FileFormatError, InvalidInputError
 from rinow.io.atomic import replacing
 from rinow.io.faults import quiet
+from rinow.io.fields import Fields, Units
 from rinow.mesh import TriangleMesh
 
-__all__ = ["is_freesurfer", "read_freesurfer", "write_freesurfer"]
+__all__ = ["chosen_field", "is_freesurfer", "read_curv", "read_freesurfer", "write_curv", "write_freesurfer"]
 
 _TRIANGLES, _QUADS = b"\xff\xff\xfe", (b"\xff\xff\xff", b"\xff\xff\xfd")
 
@@ -81,3 +82,42 @@ def write_freesurfer(path: Path, mesh: TriangleMesh) -> tuple[str, ...]:
     with replacing(path) as temporary:
         write_geometry(str(temporary), mesh.vertices, mesh.faces, create_stamp="created by rinow")
     return ("FreeSurfer files hold positions in single precision.",)
+
+
+def read_curv(path: Path) -> TriangleMesh:
+    """Refuse a file that holds no surface.
+
+    Raises
+    ------
+    FileFormatError
+        Always.
+    """
+    raise FileFormatError("a curv file holds a number per vertex and no surface; give the surface, such as lh.white.")
+
+
+def chosen_field(path: Path, fields: Fields, quality: str | None) -> str:
+    """The one field of a curv file: that named before the suffix (lh.mean.curv), else `quality` or the only one.
+
+    Raises
+    ------
+    InvalidInputError
+        If none is named, or it has several numbers per vertex.
+    """
+    named = path.name.split(".")[-2:-1]
+    name = named[0] if named and named[0] in fields else quality
+    if name is None and len(fields) == 1:
+        (name,) = fields
+    if name is None or fields[name].ndim > 1:
+        single = ", ".join(field for field, values in fields.items() if values.ndim == 1)
+        raise InvalidInputError(f"a curv file holds one number per vertex; name one of {single or 'some field'}.")
+    return name
+
+
+def write_curv(path: Path, mesh: TriangleMesh, fields: Fields, units: Units) -> tuple[str, ...]:
+    """Write one field as FreeSurfer's tools and freeview read it, in single precision."""
+    from nibabel.freesurfer.io import write_morph_data
+
+    ((name, values),) = fields.items()
+    with replacing(path) as temporary, np.errstate(over="ignore", invalid="ignore"):
+        write_morph_data(str(temporary), values.astype(np.float32), fnum=mesh.n_faces)
+    return (f"{path.name} holds one field, in single precision: {units.get(name, name)}.",)

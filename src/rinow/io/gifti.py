@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from rinow.errors import FileFormatError, InvalidInputError
@@ -15,10 +16,12 @@ from rinow.io.faults import quiet, reading
 from rinow.io.fields import Fields, Units, in_type_of
 from rinow.mesh import TriangleMesh
 
-__all__ = ["read_gifti", "write_gifti"]
+__all__ = ["in_single_precision", "read_gifti", "write_gifti"]
 
 _SUFFIX = re.compile(r"(?:\.surf)?\.gii(?:\.gz)?$", re.IGNORECASE)
 _TYPES = ("u1", "i4", "f4", "f8")
+_HEMISPHERES = {"lh": "CortexLeft", "left": "CortexLeft", "rh": "CortexRight", "right": "CortexRight"}
+_HEMISPHERES |= {"L": "CortexLeft", "R": "CortexRight"}
 
 
 def read_gifti(path: Path) -> TriangleMesh:
@@ -99,7 +102,7 @@ def write_gifti(path: Path, mesh: TriangleMesh, fields: Fields, units: Units) ->
     mesh : TriangleMesh
         The surface.
     fields : mapping of str to (n_vertices, ...) ndarray
-        Fields; their types are kept where GIFTI has them, else they become float64.
+        Fields; their types are kept where nibabel has them, else they become float64.
     units : mapping of str to str
         What a field means; written into its metadata.
 
@@ -117,26 +120,52 @@ def write_gifti(path: Path, mesh: TriangleMesh, fields: Fields, units: Units) ->
 
     Notes
     -----
-    The GIFTI standard (1.0, 2011) names uint8, int32 and float32; nibabel also reads and writes float64, which is used
-    here so that no digit is lost.
+    The GIFTI standard (1.0, 2011) names uint8, int32 and float32.  nibabel also reads and writes float64, which is used
+    where a number would lose digits; `in_single_precision` makes what every reader takes.  A name with a part lh, L or
+    left (rh, R or right) tells the hemisphere, which Connectome Workbench asks for.
     """
     companions = {name: _companion(path, name) for name in fields}
     if len(set(companions.values())) < len(companions):
         raise InvalidInputError(f"two of the fields {', '.join(fields)} make the same file name; rename one.")
-    files = {path: _image((mesh.vertices, "NIFTI_INTENT_POINTSET", {}), (mesh.faces, "NIFTI_INTENT_TRIANGLE", {}))}
+    hemisphere = _hemisphere(path)
+    positions = _rounded(mesh.vertices)
+    if not np.array_equal(positions, mesh.vertices, equal_nan=True):
+        positions = mesh.vertices
+    arrays = (positions, "NIFTI_INTENT_POINTSET", hemisphere), (mesh.faces, "NIFTI_INTENT_TRIANGLE", {})
+    files = {path: _image(hemisphere, *arrays)}
     for name, file in companions.items():
         intent = "NIFTI_INTENT_SHAPE" if fields[name].ndim == 1 else "NIFTI_INTENT_VECTOR"
-        files[file] = _image(
-            (fields[name], intent, {"Name": name, "rinow_name": name, "Description": units.get(name, name)})
-        )
+        meta = {"Name": name, "rinow_name": name, "Description": units.get(name, name)}
+        files[file] = _image(hemisphere, (fields[name], intent, meta))
     with ExitStack() as stack:
         for file, image in files.items():
             image.to_filename(str(stack.enter_context(replacing(file))), mode="force")
     made = ", ".join(file.name for file in companions.values())
+    double = any(array.data.dtype == np.float64 for image in files.values() for array in image.darrays)
     return (
-        "GIFTI files hold positions and fields in double precision, which nibabel reads; the standard asks for single.",
+        "GIFTI files hold numbers in double precision, which nibabel reads; Connectome Workbench wants float32."
+        if double
+        else "GIFTI files hold positions and real numbers in single precision, as the standard asks.",
         *([f"the fields are in companion files: {made}."] if made else []),
     )
+
+
+def in_single_precision(mesh: TriangleMesh, fields: Fields) -> tuple[TriangleMesh, Fields]:
+    """The mesh and its fields with numbers that every reader of GIFTI takes."""
+    rounded = {name: _rounded(values) if values.dtype == np.float64 else values for name, values in fields.items()}
+    return TriangleMesh(_rounded(mesh.vertices), mesh.faces), rounded
+
+
+def _rounded(values: NDArray[Any]) -> NDArray[np.float32]:
+    """The nearest numbers of single precision, infinite where there is none."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return values.astype(np.float32)
+
+
+def _hemisphere(path: Path) -> dict[str, str]:
+    """What the name of a surface says about its side, as Connectome Workbench wants to read it."""
+    parts = {_HEMISPHERES[part] for part in re.split(r"[._-]", path.name) if part in _HEMISPHERES}
+    return {"AnatomicalStructurePrimary": parts.pop()} if len(parts) == 1 else {}
 
 
 def _companion(path: Path, name: str) -> Path:
@@ -146,7 +175,7 @@ def _companion(path: Path, name: str) -> Path:
     return path.with_name(f"{_stem(path)}.{field}.shape.gii{gz}")
 
 
-def _image(*arrays: tuple[NDArray[Any], str, dict[str, str]]) -> Any:
+def _image(about: dict[str, str], *arrays: tuple[NDArray[Any], str, dict[str, str]]) -> Any:
     """A GIFTI image of arrays, each with its intent and metadata."""
     from nibabel.gifti.gifti import GiftiDataArray, GiftiImage, GiftiMetaData
 
@@ -154,4 +183,4 @@ def _image(*arrays: tuple[NDArray[Any], str, dict[str, str]]) -> Any:
     for values, intent, meta in arrays:
         data = in_type_of(values, _TYPES)
         darrays.append(GiftiDataArray(data, intent=intent, datatype=data.dtype, meta=GiftiMetaData(meta)))
-    return GiftiImage(darrays=darrays)
+    return GiftiImage(meta=GiftiMetaData(about), darrays=darrays)

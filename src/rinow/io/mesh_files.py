@@ -15,19 +15,27 @@ from rinow.errors import FileFormatError, InvalidInputError
 from rinow.io.atomic import check_targets
 from rinow.io.faults import reading, writing
 from rinow.io.fields import VTK_NAMES, checked_fields, renamed
-from rinow.io.freesurfer import is_freesurfer, read_freesurfer, write_freesurfer
-from rinow.io.gifti import read_gifti, write_gifti
+from rinow.io.freesurfer import (
+    chosen_field,
+    is_freesurfer,
+    read_curv,
+    read_freesurfer,
+    write_curv,
+    write_freesurfer,
+)
+from rinow.io.gifti import in_single_precision, read_gifti, write_gifti
 from rinow.io.glb import read_glb, write_glb
 from rinow.io.npz import read_npz, write_npz
 from rinow.io.obj import read_obj, write_obj
 from rinow.io.off import read_off, write_off
 from rinow.io.ply import read_ply, write_ply
 from rinow.io.stl import read_stl_mesh, write_stl
+from rinow.io.threemf import read_3mf, write_3mf
 from rinow.io.vtk import read_vtp, write_vtk
 from rinow.io.vtk_legacy import read_legacy_vtk
 from rinow.mesh import TriangleMesh, as_triangle_mesh
 
-__all__ = ["check_outputs", "demo_mesh", "read_mesh", "write_mesh"]
+__all__ = ["check_outputs", "demo_mesh", "read_mesh", "write_mesh", "write_result"]
 
 PathLike = str | os.PathLike[str]
 
@@ -46,6 +54,7 @@ class _Format:
 _PLY = _Format("PLY", read_ply, write_ply, has_fields=True)
 _GIFTI = _Format("GIFTI", read_gifti, write_gifti, has_fields=True)
 _FREESURFER = _Format("FreeSurfer", read_freesurfer, write_freesurfer)
+_CURV = _Format("curv", read_curv, write_curv, has_fields=True)
 
 _FORMATS = {
     ".ply": _PLY,
@@ -53,13 +62,18 @@ _FORMATS = {
     ".stl": _Format("STL", read_stl_mesh, write_stl),
     ".off": _Format("OFF", read_off, write_off),
     ".glb": _Format("GLB", read_glb, write_glb),
+    ".3mf": _Format("3MF", read_3mf, write_3mf),
     ".npz": _Format("NPZ", read_npz, write_npz, has_fields=True),
     ".vtp": _Format("VTP", read_vtp, write_vtk, has_fields=True, names=VTK_NAMES),
     ".vtk": _Format("VTK", read_legacy_vtk, write_vtk, has_fields=True, names=VTK_NAMES),
     ".gii": _GIFTI,
     ".gii.gz": _GIFTI,
     **dict.fromkeys((".white", ".pial", ".inflated", ".sphere", ".orig", ".smoothwm"), _FREESURFER),
+    ".curv": _CURV,
 }
+
+GRAPHS = (".graphml", ".gml", ".gexf", ".edges", ".edgelist")
+"""Suffixes of graphs, which are no meshes."""
 
 
 def read_mesh(path: PathLike) -> TriangleMesh:
@@ -68,8 +82,8 @@ def read_mesh(path: PathLike) -> TriangleMesh:
     Parameters
     ----------
     path : path
-        A file whose suffix is, in any case, .ply, .obj, .stl, .off, .glb, .npz, .vtp, .vtk (PolyData), .gii, .gii.gz
-        or a name of FreeSurfer's surfaces (.white, .pial, .inflated, .sphere, .orig, .smoothwm; other names are
+        A file whose suffix is, in any case, .ply, .obj, .stl, .off, .glb, .3mf, .npz, .vtp, .vtk (PolyData), .gii,
+        .gii.gz or a name of FreeSurfer's surfaces (.white, .pial, .inflated, .sphere, .orig, .smoothwm; other names are
         known by their first bytes).
 
     Returns
@@ -130,7 +144,7 @@ def write_mesh(
     Parameters
     ----------
     path : path
-        A file with a suffix that `read_mesh` knows; an existing one is replaced.
+        A file with a suffix that `read_mesh` knows, or .curv; an existing one is replaced.
     mesh : TriangleMesh, (V, F) pair or object with vertices and faces
         The surface.
     vertex_data : mapping of str to (n_vertices, ...) array_like of float or int, optional
@@ -138,7 +152,7 @@ def write_mesh(
     units : mapping of str to str, optional
         What each field means (quantity, unit, sign); written beside the fields.
     quality : str, optional
-        Name of the field that PLY files call ``quality``, as MeshLab expects.
+        Name of the field that PLY files call ``quality``, as MeshLab expects, and that a .curv file holds.
 
     Returns
     -------
@@ -163,7 +177,8 @@ def write_mesh(
     PLY (binary, positions and real fields in double precision), VTP, VTK, NPZ and GIFTI (one companion file
     ``stem.field.shape.gii`` for each field) keep every field and every bit, nan included.  In VTP and VTK the fields
     gaussian, mean, k1 and k2 are called Gauss_Curvature, Mean_Curvature, Maximum_Curvature and Minimum_Curvature, as
-    by VTK itself.  OBJ and OFF keep the geometry only; STL, GLB and FreeSurfer files keep it in single precision.
+    by VTK itself.  OBJ, OFF and 3MF keep the geometry only; STL, GLB and FreeSurfer files keep it in single precision.
+    FreeSurfer's .curv files hold one field: that named before the suffix (``lh.mean.curv``), else `quality`.
 
     Examples
     --------
@@ -181,6 +196,9 @@ def write_mesh(
     fields = checked_fields(surface.vertex_data if vertex_data is None else vertex_data, surface.n_vertices)
     if quality is not None and quality not in fields:
         raise InvalidInputError(f"quality = {quality!r} is not one of the fields {', '.join(fields) or '(none)'}.")
+    if form is _CURV:
+        chosen = chosen_field(file, fields, quality)
+        fields = {chosen: fields[chosen]}
     names = {quality: "quality"} if form is _PLY and quality is not None else form.names
     meanings = {name: text for name, text in (units or {}).items() if name in fields}
     with writing(file, form.name):
@@ -193,6 +211,15 @@ def write_mesh(
         )
         notes = (left_out, *notes)
     return notes
+
+
+def write_result(
+    path: PathLike, mesh: TriangleMesh, vertex_data: Mapping[str, ArrayLike], units: Mapping[str, str], quality: str
+) -> tuple[str, ...]:
+    """As `write_mesh`, but so that other programs read it: GIFTI in single precision, as its standard has it."""
+    if _format_of(Path(path)) is _GIFTI:
+        mesh, vertex_data = in_single_precision(mesh, checked_fields(vertex_data, mesh.n_vertices))
+    return write_mesh(path, mesh, vertex_data, units=units, quality=quality)
 
 
 def check_outputs(
@@ -260,5 +287,7 @@ def _format_of(path: Path, *, sniff: bool = False) -> _Format:
         raise FileFormatError(f"{path} is a folder; give the name of a mesh file.")
     if sniff and os.path.isfile(path) and not os.path.getsize(path):
         raise FileFormatError(f"{path}: the file is empty; export it again.")
+    if sniff and name.endswith(GRAPHS):
+        raise FileFormatError(f"{path} holds a graph, no mesh; rinow graph computes the curvature of a graph.")
     cure = "convert the mesh to PLY" if sniff else "choose one of these"
     raise FileFormatError(f"{path} has no suffix of a known mesh format ({' '.join(_FORMATS)}); {cure}.")

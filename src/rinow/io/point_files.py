@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 
 from rinow.errors import FileFormatError
 from rinow.io.atomic import check_targets
+from rinow.io.distance_tables import read_distances
+from rinow.io.edge_lists import names_edges
 from rinow.io.faults import reading, writing
 from rinow.io.fields import renamed
 from rinow.io.npz import FACES
 from rinow.io.ply import has_faces, write_ply_points
-from rinow.io.tables import TABLE_SUFFIXES, read_points, write_columns
+from rinow.io.tables import TABLE_SUFFIXES, TEXT, heading_of, read_points, write_columns
 
 __all__ = ["check_has_faces", "check_point_outputs", "holds_points", "read_cloud", "write_points"]
 
@@ -24,6 +26,8 @@ Floats = NDArray[np.float64]
 
 WRITTEN = (".ply", ".csv", ".npz")
 AXES = ("x", "y", "z")
+NAMES = (AXES, *(tuple(f"points{mark}{i}" for i in range(3)) for mark in ":_"))
+"""What headings call the coordinates, in any case; ParaView says Points:0 or Points_0."""
 
 
 def holds_points(path: Path) -> bool:
@@ -68,17 +72,46 @@ def read_cloud(path: Path) -> tuple[Floats, tuple[str, ...]]:
     FileFormatError
         If the file has a fault, its rows have less than three numbers, or it holds a matrix of distances.
     """
-    points = read_points(path)
+    heading = heading_of(path) if path.suffix.lower() in TEXT else []
+    named = next((names for names in NAMES if set(names) <= set(heading)), None)
+    if named is None and names_edges(heading):
+        raise FileFormatError(f"{path} holds edges of a graph, no points; rinow graph computes their curvature.")
+    try:
+        points = read_points(path)
+    except FileFormatError as error:
+        raise _as_distances(path) or error from error
     width = points.shape[1]
     if width < 3:
         raise FileFormatError(f"{path} has rows of {width} numbers; a point in space has three: x, y and z.")
-    if len(points) == width > 3 and np.allclose(points, points.T) and not points.diagonal().any():
-        raise FileFormatError(
-            f"{path} holds the distances of {width} points, not their places; add --distances (rinow curvature, "
-            "rinow compare)."
-        )
-    notes = () if width == 3 else (f"The rows have {width} numbers; the first three are taken for x, y and z.",)
-    return np.ascontiguousarray(points[:, :3]), notes
+    if _is_of_distances(points):
+        raise _distances_fault(path, width)
+    columns = [0, 1, 2]
+    if named is not None and len(heading) == width:
+        columns = [heading.index(name) for name in named]
+    words = "first three" if columns == [0, 1, 2] else f"columns {', '.join(str(c + 1) for c in columns)}"
+    notes = () if width == 3 else (f"The rows have {width} numbers; the {words} are taken for x, y and z.",)
+    return np.ascontiguousarray(points[:, columns]), notes
+
+
+def _is_of_distances(table: Floats) -> bool:
+    """Whether a table is a matrix of distances rather than one of points."""
+    n, width = table.shape
+    return n == width > 3 and np.allclose(table, table.T) and not table.diagonal().any()
+
+
+def _distances_fault(path: Path, n: int) -> FileFormatError:
+    return FileFormatError(
+        f"{path} holds the distances of {n} points, not their places; add --distances (rinow curvature, rinow compare)."
+    )
+
+
+def _as_distances(path: Path) -> FileFormatError | None:
+    """The error for a table that is one of distances with labels."""
+    try:
+        matrix, _ = read_distances(path)
+    except FileFormatError:
+        return None
+    return _distances_fault(path, len(matrix)) if _is_of_distances(matrix) else None
 
 
 def check_point_outputs(outputs: Iterable[Path], *, inputs: Iterable[Path] = ()) -> None:

@@ -1,8 +1,9 @@
-"""Tables of numbers in files: points as rows, or distance matrices."""
+"""Tables of numbers in files, such as points as rows."""
 
 from __future__ import annotations
 
 import codecs
+import csv
 import os
 import zipfile
 from collections.abc import Iterable, Mapping
@@ -20,7 +21,17 @@ from rinow.io.npz import VERTICES, read_arrays
 from rinow.io.ply import read_ply_points
 from rinow.io.text_numbers import numbers_of_rows
 
-__all__ = ["TABLE_SUFFIXES", "check_tables", "read_distances", "read_points", "write_columns"]
+__all__ = [
+    "TABLE_SUFFIXES",
+    "TEXT",
+    "check_tables",
+    "heading_of",
+    "numbers_of_text",
+    "read_points",
+    "stored_table",
+    "text_of",
+    "write_columns",
+]
 
 Floats = NDArray[np.float64]
 
@@ -30,7 +41,6 @@ MARKS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM
 """Marks at the beginning of text written by spreadsheets."""
 
 POINT_NAMES = ("points", "P", *VERTICES)
-DISTANCE_NAMES = ("distances", "D")
 
 
 def read_points(path: str | os.PathLike[str]) -> Floats:
@@ -62,49 +72,27 @@ def read_points(path: str | os.PathLike[str]) -> Floats:
     return read_mesh(file).vertices
 
 
-def read_distances(path: str | os.PathLike[str]) -> Floats:
-    """Read a square matrix of distances from a table.
-
-    Parameters
-    ----------
-    path : path
-        As for `read_points`; in .npz files the only array, or ``distances`` or ``D``.
-
-    Returns
-    -------
-    distances : (n, n) ndarray of float
-        Not checked further.
-
-    Raises
-    ------
-    FileFormatError
-        If the file is missing, has a fault, or its table is not square.
-    """
-    file = Path(path)
-    D = _read_table(file, DISTANCE_NAMES)
-    if D.shape[0] != D.shape[1]:
-        raise FileFormatError(f"{file} has {D.shape[0]} rows of {D.shape[1]} numbers; a distance matrix is square.")
-    return D
-
-
 def _read_table(file: Path, names: tuple[str, ...]) -> Floats:
     """A table of real numbers with at least one row and one column."""
-    suffix = file.suffix.lower()
-    with reading(file, suffix.removeprefix(".").upper() or "table"):
-        if suffix in TEXT:
-            return _from_text(file.read_bytes())
-        if suffix == ".npz":
-            table = _chosen(read_arrays(file), names)
-        elif suffix == ".npy":
-            with file.open("rb") as stream:
-                if stream.read(len(npy.MAGIC_PREFIX)) != npy.MAGIC_PREFIX:
-                    raise FileFormatError("the file is no NPY file, or it is damaged; export it again.")
-            table = np.load(file, allow_pickle=False)
-        else:
-            raise FileFormatError(f"the suffix is none of {' '.join(TABLE_SUFFIXES)}; convert the table to CSV.")
+    with reading(file, file.suffix.removeprefix(".").upper() or "table"):
+        if file.suffix.lower() in TEXT:
+            return numbers_of_text(text_of(file))
+        table = stored_table(file, names)
         if table.ndim != 2 or not table.size or table.dtype.kind not in "biuf":
             raise FileFormatError(f"the array has type {table.dtype} and shape {table.shape}; give a table of numbers.")
         return np.ascontiguousarray(table, np.float64)
+
+
+def stored_table(file: Path, names: tuple[str, ...]) -> NDArray[np.generic]:
+    """The array of an NPY file, or the only array, or that with one of these names, of an NPZ file."""
+    if file.suffix.lower() == ".npz":
+        return _chosen(read_arrays(file), names)
+    if file.suffix.lower() != ".npy":
+        raise FileFormatError(f"the suffix is none of {' '.join(TABLE_SUFFIXES)}; convert the table to CSV.")
+    with file.open("rb") as stream:
+        if stream.read(len(npy.MAGIC_PREFIX)) != npy.MAGIC_PREFIX:
+            raise FileFormatError("the file is no NPY file, or it is damaged; export it again.")
+    return np.load(file, allow_pickle=False)
 
 
 def _chosen(arrays: Mapping[str, NDArray[np.generic]], names: tuple[str, ...]) -> NDArray[np.generic]:
@@ -117,18 +105,35 @@ def _chosen(arrays: Mapping[str, NDArray[np.generic]], names: tuple[str, ...]) -
     raise FileFormatError(f"the archive holds {', '.join(arrays) or 'nothing'} but none of {', '.join(names)}.")
 
 
-def _from_text(text: bytes) -> Floats:
+def text_of(file: Path) -> bytes:
+    """What a text file holds, as UTF-8 without a mark and with one kind of line end."""
+    text = file.read_bytes()
+    for mark, encoding in MARKS.items():
+        if text.startswith(mark):
+            text = text.decode(encoding, errors="replace").encode()
+    return text.replace(b"\r", b"\n")
+
+
+def heading_of(file: Path) -> list[str]:
+    """The cells of the first line of a text file that is no comment, in small letters; none if one is a number."""
+    if not file.is_file():
+        return []
+    lines = (line for line in text_of(file).split(b"\n") if line.strip() and not line.lstrip().startswith(b"#"))
+    first = next(lines, b"").decode("utf-8", errors="replace").strip(" ")
+    mark = next((mark for mark in ";\t," if mark in first), " ")
+    cells = [cell.strip().lower() for cell in next(csv.reader([first], delimiter=mark, skipinitialspace=True), [])]
+    return [] if any(_is_number(cell.encode()) for cell in cells) else cells
+
+
+def numbers_of_text(text: bytes) -> Floats:
     """Rows of numbers; blank lines and comments are skipped, and so is a heading: a first row without any number.
 
     In a row with semicolons, which part numbers, commas are decimal marks, as in spreadsheets of half of Europe.
     """
-    for mark, encoding in MARKS.items():
-        if text.startswith(mark):
-            text = text.decode(encoding, errors="replace").encode()
-    lines = text.replace(b"\r", b"\n").split(b"\n")
+    lines = text.split(b"\n")
     rows = (line for line in lines if not line.lstrip().startswith(b"#"))
     comma = b"." if b";" in text and any(b";" in row and b"," in row for row in rows) else b" "
-    lines = text.replace(b"\r", b"\n").replace(b",", comma).replace(b";", b" ").split(b"\n")
+    lines = text.replace(b",", comma).replace(b";", b" ").split(b"\n")
     kept = [i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith(b"#")]
     if kept and not any(_is_number(word) for word in lines[kept[0]].split()):
         del kept[0]
@@ -190,6 +195,6 @@ def write_columns(path: Path, columns: Mapping[str, NDArray[np.generic]], meanin
                         npy.write_array(file, np.asarray(values), allow_pickle=False)
             return
         rows = zip(*(np.asarray(values).tolist() for values in columns.values()), strict=True)
-        with temporary.open("w", encoding="utf-8") as file:
+        with temporary.open("w", encoding="utf-8", newline="") as file:
             file.write(f"# {meaning}\n{','.join(columns)}\n")
-            file.writelines(",".join(map(repr, row)) + "\n" for row in rows)
+            csv.writer(file, lineterminator="\n").writerows(rows)  # numbers as by repr, texts quoted where they must be

@@ -12,9 +12,11 @@ import inspect
 import itertools
 import os
 import textwrap
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 
 import numba
+from numba.core.errors import NumbaWarning
 
 PARTS = 4
 """Parts of a loop for each thread: threads that are done early take those of the others."""
@@ -33,7 +35,7 @@ class Parallel:
         """Run all parts of the loop."""
         if self.compiled is None:
             self.compiled = numba.njit(nogil=True, **self.options)(of_a_part(self.function))
-        n_threads = numba.get_num_threads()
+        n_threads = number_of_threads()
         if n_threads == 1:
             self.compiled(0, 1, *args)
             return
@@ -52,6 +54,21 @@ class Parallel:
             for other in others:
                 if not other.cancel():
                     other.result()
+
+
+_asked = []
+
+
+def number_of_threads():
+    """As `numba.get_num_threads`, which when first called looks for libraries of threads and warns of old ones.
+
+    None of them is used here, and such ones come with others' packages.
+    """
+    if not _asked:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", NumbaWarning)
+            _asked.append(numba.get_num_threads())
+    return numba.get_num_threads()
 
 
 def of_a_part(function):

@@ -195,16 +195,12 @@ def _shorten(dive, x, y, t):
 
 
 @parallel_kernel
-def many_dives(
-    X, Y, places, first_lists, first_counts, t, most, lists, counts, undecided, partners, weights, random, numbers
-):
-    """Dives for the same places from the same lists, each with its own random numbers."""
+def many_descents(X, Y, places, t, n_decisions, most, lists, counts, undecided, partners, weights, random, numbers, on):
+    """Go on with dives for the same places, each by up to so many decisions; write to on[k] whether it goes on."""
     for k in prange(lists.shape[0]):
-        lists[k] = first_lists
-        counts[k] = first_counts
-        dive = Dive(X, Y, places, lists[k], counts[k], undecided[k], partners[k], weights[k], random[k], numbers[k])
-        begin(dive)
-        descend(dive, t, places.shape[0], most)
+        if on[k]:
+            dive = Dive(X, Y, places, lists[k], counts[k], undecided[k], partners[k], weights[k], random[k], numbers[k])
+            on[k] = descend(dive, t, n_decisions, most)
 
 
 @kernel

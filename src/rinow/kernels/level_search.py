@@ -75,7 +75,7 @@ def begin(problem, stack, weights):
 
 @kernel
 def search(problem, stack, progress, weights, budget):
-    """Go on until so many sets are compared, a relation is found (the decisions), or nothing is left."""
+    """Go on until so many words of sets are compared, a relation is found (the decisions), or nothing is left."""
     spent = 0
     while spent < budget:
         if progress[NODES] >= progress[LIMIT]:
@@ -127,7 +127,7 @@ def _choose(stack, depth, weights):
 @inner
 def _decide(problem, stack, depth, place, weights):
     """Decide for the first pair of a row or column and write what it leaves; whether that is not nothing; the work."""
-    n, m = stack.rows.shape[1], stack.columns.shape[1]
+    n = stack.rows.shape[1]
     x = place if place < n else first_point(stack.columns[depth, place - n])
     y = place - n if place >= n else first_point(stack.rows[depth, place])
     stack.decisions[depth, 0], stack.decisions[depth, 1] = x, y
@@ -138,11 +138,12 @@ def _decide(problem, stack, depth, place, weights):
         columns = (now.columns, now.column_counts, after.columns, after.column_counts, stack.changed_columns)
         emptied = _intersect(*columns, X.near[x], Y.codes[y])
         emptied += n if emptied >= 0 else 0
+    compared = stack.rows.shape[1] * stack.rows.shape[2] + stack.columns.shape[1] * stack.columns.shape[2]
     if emptied >= 0:
         weights[emptied] += 1.0
-        return False, n + m
+        return False, compared
     alive, work = _propagate(problem, stack, depth + 1, weights)
-    return alive, work + n + m
+    return alive, work + compared
 
 
 @inner
@@ -208,7 +209,8 @@ def _propagate(problem, stack, depth, weights):
             if (relation.row_counts[at] if place < n else relation.column_counts[at]) > most:
                 continue
             changed = True
-            work += n if place < n else m
+            own, union = (relation.rows, stack.near_row) if place < n else (relation.columns, stack.near_column)
+            work += own.shape[0] * own.shape[1] + LARGE_COUNT * union.shape[0]
             if place < n:
                 rows = (relation.rows, at, problem.Y.near, problem.X.codes[at], stack.near_row)
                 emptied = _support(relation, stack, *rows, True)

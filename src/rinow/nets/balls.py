@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from rinow.geodesics.exact import SOURCES_AT_ONCE, ExactGeodesics
+from rinow.kernels._parallel import number_of_threads
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
 __all__ = ["BallOf", "covers", "mesh_balls", "space_balls", "surface_radius_of", "surface_vertices"]
@@ -50,7 +51,7 @@ def mesh_balls(mesh: TriangleMesh | IntrinsicMesh) -> BallOf:
 @contextmanager
 def _one_thread() -> Generator[None]:
     """A single source is the work of one thread; the others would only be waited for."""
-    before = numba.get_num_threads()
+    before = number_of_threads()
     numba.set_num_threads(1)
     try:
         yield
