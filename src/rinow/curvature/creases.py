@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rinow._arrays import read_only
 from rinow.curvature.exact_facets import ends_of_facets
 from rinow.curvature.stencils import N_BLOCKS
-from rinow.kernels import crease_lines, creases, edge_noise, stencils
+from rinow.kernels import crease_lines, creases, edge_noise, edge_numbers, stencils
 from rinow.mesh import TriangleMesh
 
 __all__ = ["CreaseLines", "EdgeTurnings", "crease_lines_of"]
@@ -96,8 +96,10 @@ class EdgeTurnings:
         for _ in range(NOISE_RINGS):
             stencils.ring_sums(noise, t.neighbour_offsets, t.neighbours, sums)
             noise = sums / (np.diff(t.neighbour_offsets) + 1)
-        noise[t.edges[self.ends_facet]] = 0.0
-        return read_only(noise[t.edges].mean(axis=1))
+        noise[t.halfedge_ends(self.halfedges[self.ends_facet])] = 0.0
+        at_edges = np.empty(len(self.halfedges))
+        edge_numbers.means_of_ends(noise, self.mesh.faces, self.halfedges, at_edges)  # the mesh would keep `edges`
+        return read_only(at_edges)
 
     @cached_property
     def noise(self) -> Floats:
