@@ -50,12 +50,12 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     is_flat &= other >= 0
     if not is_sharp.any() or np.count_nonzero(is_flat) < LARGE:
         return np.zeros(len(other), np.bool_)
-    sides = np.stack([halfedges // 3, np.where(other >= 0, other // 3, halfedges // 3)])
-    angles = np.where(other >= 0, np.nan_to_num(turnings), 0.0)
-    facet_of_face = clusters(mesh.n_faces, sides[:, is_flat].T)[1]
+    facet_of_face = _facets(mesh.n_faces, np.stack([halfedges[is_flat], other[is_flat]], axis=1) // 3)
     is_large = (np.bincount(facet_of_face) >= LARGE)[facet_of_face]
     if not is_large.any():
         return np.zeros(len(other), np.bool_)
+    sides = np.stack([halfedges // 3, np.where(other >= 0, other // 3, halfedges // 3)])
+    angles = np.where(other >= 0, np.nan_to_num(turnings), 0.0)
     facets, is_large = facet_of_face[sides], is_large[sides]
     ends = is_sharp & is_large.any(axis=0)
     sharp = np.flatnonzero(ends)
@@ -63,6 +63,15 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     smaller = np.where(areas[0] < areas[1], facets[0, sharp], facets[1, sharp])
     ends[sharp] = ~_begin_steps(sharp, smaller, mesh, angles, facets)
     return ends
+
+
+def _facets(n_faces: int, pairs: Indices) -> Indices:
+    """(n_faces,): the first face of the facet of each face, for pairs of faces in one plane; few of many faces."""
+    facet_of_face = np.arange(n_faces)
+    joined, places = np.unique(pairs, return_inverse=True)
+    first, facet = clusters(len(joined), places.reshape(-1, 2))
+    facet_of_face[joined] = joined[first[facet]]
+    return facet_of_face
 
 
 def _begin_steps(edges: Indices, beside: Indices, mesh: TriangleMesh, angles: Floats, facets: Indices) -> Bools:
