@@ -112,6 +112,19 @@ def heights_over_rings(vertices, normals, offsets, neighbours, out):
 
 
 @parallel_kernel
+def stand_out(heights, least, ratio, offsets, neighbours, out):
+    """Write whether the height of a vertex exceeds a least one, and its square that of its neighbours by a ratio."""
+    for v in prange(offsets.shape[0] - 1):
+        out[v] = abs(heights[v]) > least[v]
+        if out[v]:
+            own = heights[v] * heights[v]
+            total = own
+            for i in range(offsets[v], offsets[v + 1]):
+                total += heights[neighbours[i]] * heights[neighbours[i]]
+            out[v] = own > ratio * ((total - own) / max(offsets[v + 1] - offsets[v], 1))
+
+
+@parallel_kernel
 def mean_edge_lengths(vertices, offsets, neighbours, out):
     """Write the mean distance from each vertex to its neighbours; 0 without any."""
     for v in prange(offsets.shape[0] - 1):
