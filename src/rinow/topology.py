@@ -16,6 +16,9 @@ __all__ = ["Topology", "clusters"]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 
+PIECES = 64
+"""Parts that half-edges are counted in, by any thread."""
+
 
 @dataclass(frozen=True, eq=False)
 class Topology:
@@ -77,8 +80,12 @@ class Topology:
     @cached_property
     def edge_halfedges(self) -> Indices:
         """(n_edges,): the first half-edge of each edge."""
-        first = self._halfedge_edges[1]
-        return read_only(np.flatnonzero(first == np.arange(len(first))))
+        first, starts = self._halfedge_edges[1], np.zeros(PIECES + 1, np.intp)
+        edge_numbers.count_edges(first, starts[1:])
+        np.cumsum(starts, out=starts)
+        halfedges = np.empty(starts[-1], np.intp)
+        edge_numbers.list_edges(first, starts, halfedges)
+        return read_only(halfedges)
 
     def edge_of_halfedge(self) -> Indices:
         """(3 n_faces,): number of the edge of each half-edge; -1 for faces that take no part.  It is not kept."""

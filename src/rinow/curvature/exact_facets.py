@@ -43,17 +43,18 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     The smaller facet beside an edge is a step if it turns the other way at its far side.  Surfaces of voxels consist of
     steps, whose treads are flat facets of a surface that is none.
     """
+    sizes = np.abs(turnings)
     with np.errstate(invalid="ignore"):
-        is_sharp, is_flat = np.abs(turnings) >= SHARP, np.abs(turnings) <= file_rounding(mesh) * gains
-    other = mesh.topology.partners[halfedges]
-    is_sharp &= other >= 0
-    is_flat &= other >= 0
+        is_sharp, is_flat = sizes >= SHARP, sizes <= file_rounding(mesh) * gains
+    del sizes
     if not is_sharp.any() or np.count_nonzero(is_flat) < LARGE:
-        return np.zeros(len(other), np.bool_)
-    facet_of_face = _facets(mesh.n_faces, np.stack([halfedges[is_flat], other[is_flat]], axis=1) // 3)
+        return np.zeros(len(halfedges), np.bool_)
+    beside = halfedges[is_flat]
+    facet_of_face = _facets(mesh.n_faces, np.stack([beside, mesh.topology.partners[beside]], axis=1) // 3)
     is_large = (np.bincount(facet_of_face) >= LARGE)[facet_of_face]
     if not is_large.any():
-        return np.zeros(len(other), np.bool_)
+        return np.zeros(len(halfedges), np.bool_)
+    other = mesh.topology.partners[halfedges]
     sides = np.stack([halfedges // 3, np.where(other >= 0, other // 3, halfedges // 3)])
     angles = np.where(other >= 0, np.nan_to_num(turnings), 0.0)
     facets, is_large = facet_of_face[sides], is_large[sides]

@@ -7,6 +7,29 @@ from rinow.kernels._jit import parallel_kernel, prange
 
 
 @parallel_kernel
+def count_edges(first, counts):
+    """Write how many half-edges of each of some pieces of them are the first ones of their edge."""
+    n, n_pieces = len(first), len(counts)
+    for i in prange(len(counts)):
+        count = 0
+        for h in range(n * i // n_pieces, n * (i + 1) // n_pieces):
+            count += first[h] == h
+        counts[i] = count
+
+
+@parallel_kernel
+def list_edges(first, starts, edge_halfedges):
+    """Write the first half-edges of all edges; those of each piece from its start on."""
+    n, n_pieces = len(first), len(starts) - 1
+    for i in prange(len(starts) - 1):
+        e = starts[i]
+        for h in range(n * i // n_pieces, n * (i + 1) // n_pieces):
+            if first[h] == h:
+                edge_halfedges[e] = h
+                e += 1
+
+
+@parallel_kernel
 def number_first_halfedges(edge_halfedges, numbers):
     """Write the number of each edge to its first half-edge."""
     for e in prange(len(edge_halfedges)):

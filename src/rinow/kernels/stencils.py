@@ -98,6 +98,17 @@ def ring_sums(values, offsets, neighbours, out):
 
 
 @parallel_kernel
+def ring_averages(values, itself, offsets, neighbours, out):
+    """Write the mean of values (n,) over the neighbours of each vertex, and over itself or not; 0 over none."""
+    for v in prange(offsets.shape[0] - 1):
+        total = values[v]
+        for i in range(offsets[v], offsets[v + 1]):
+            total += values[neighbours[i]]
+        count = offsets[v + 1] - offsets[v]
+        out[v] = total / (count + 1) if itself else (total - values[v]) / max(count, 1)
+
+
+@parallel_kernel
 def heights_over_rings(vertices, normals, offsets, neighbours, out):
     """Write the height of each vertex over the mean of its neighbours."""
     for v in prange(offsets.shape[0] - 1):
