@@ -22,7 +22,7 @@ from rinow.curvature.second_look import Values, look_again
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
-from rinow.kernels import balls, patch_driver, patches, risks
+from rinow.kernels import balls, patch_driver, patch_order, patches, risks
 from rinow.mesh import TriangleMesh
 
 __all__ = [
@@ -142,9 +142,9 @@ def sectional(
     out, direction1, direction2, first, _ = values
     out[:, 0] *= shrinkage(samples, values)
     columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
-    gaussian, mean, risk, reach, height, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
-    direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
-    noise, spacing, first = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing, first))
+    gaussian, mean, risk, reach, height, spread = (_spread_out(column[:, None], index, n) for column in columns)
+    direction1, direction2 = (_spread_out(d, index, n) for d in (direction1, direction2))
+    noise, spacing, first = (_spread_out(x[:, None], index, n) for x in (np.sqrt(noise), sheet.spacing, first))
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     principal = mean + half, mean - half, direction1, direction2
     estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height, first)
@@ -256,8 +256,8 @@ def _sizes_of_components(mesh: TriangleMesh) -> NDArray[np.int32]:
     return np.bincount(component + 1).astype(np.int32)[component + 1]
 
 
-def _spread_out(values: Floats, index: NDArray[np.intp], n: int) -> Floats:
-    """Values of the sheet in the order of the mesh, nan elsewhere."""
-    out = np.full((n, *values.shape[1:]), np.nan)
-    out[index] = values
-    return out
+def _spread_out(rows: Floats, index: NDArray[np.intp], n: int) -> Floats:
+    """Values of the sheet in the order of the n vertices of the mesh, nan elsewhere."""
+    out = np.full((n, rows.shape[1]), np.nan)
+    patch_order.spread_out(rows, index, out)
+    return out if rows.shape[1] > 1 else out[:, 0]

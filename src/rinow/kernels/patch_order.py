@@ -50,6 +50,14 @@ def stable_order(keys, order):
         order[i] = pairs[i] & 0x7FFFFFFF
 
 
+@parallel_kernel
+def spread_out(rows, index, out):
+    """Write each row to the place that the index says."""
+    for i in prange(len(rows)):
+        for k in range(rows.shape[1]):
+            out[index[i], k] = rows[i, k]
+
+
 @kernel
 def patch_order(offsets, neighbours, size):
     """Vertices patch by patch; each patch grows breadth first, up to `size`, from a vertex beside the earlier ones."""
