@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.rounding import file_rounding
+from rinow.kernels import edge_noise
 from rinow.mesh import TriangleMesh
 from rinow.topology import clusters
 
@@ -43,17 +44,15 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     The smaller facet beside an edge is a step if it turns the other way at its far side.  Surfaces of voxels consist of
     steps, whose treads are flat facets of a surface that is none.
     """
-    sizes = np.abs(turnings)
-    with np.errstate(invalid="ignore"):
-        is_sharp, is_flat = sizes >= SHARP, sizes <= file_rounding(mesh) * gains
-    del sizes
+    is_sharp, is_flat = np.empty((2, len(halfedges)), np.bool_)
+    edge_noise.compare_turnings(turnings, gains, SHARP, file_rounding(mesh), is_sharp, is_flat)
     if not is_sharp.any() or np.count_nonzero(is_flat) < LARGE:
         return np.zeros(len(halfedges), np.bool_)
     beside = halfedges[is_flat]
     facet_of_face = _facets(mesh.n_faces, np.stack([beside, mesh.topology.partners[beside]], axis=1) // 3)
-    is_large = (np.bincount(facet_of_face) >= LARGE)[facet_of_face]
-    if not is_large.any():
+    if facet_of_face is None:
         return np.zeros(len(halfedges), np.bool_)
+    is_large = (np.bincount(facet_of_face) >= LARGE)[facet_of_face]
     other = mesh.topology.partners[halfedges]
     sides = np.stack([halfedges // 3, np.where(other >= 0, other // 3, halfedges // 3)])
     angles = np.where(other >= 0, np.nan_to_num(turnings), 0.0)
@@ -66,11 +65,13 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     return ends
 
 
-def _facets(n_faces: int, pairs: Indices) -> Indices:
-    """(n_faces,): the first face of the facet of each face, for pairs of faces in one plane; few of many faces."""
-    facet_of_face = np.arange(n_faces)
+def _facets(n_faces: int, pairs: Indices) -> Indices | None:
+    """(n_faces,): the first face of the facet of each face, for pairs of faces in one plane; None if all are small."""
     joined, places = np.unique(pairs, return_inverse=True)
     first, facet = clusters(len(joined), places.reshape(-1, 2))
+    if np.bincount(facet).max(initial=0) < LARGE:
+        return None
+    facet_of_face = np.arange(n_faces)
     facet_of_face[joined] = joined[first[facet]]
     return facet_of_face
 

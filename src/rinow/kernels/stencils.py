@@ -158,6 +158,23 @@ def squared_distance(vertices, i, j):
     return x * x + y * y + z * z
 
 
+@parallel_kernel
+def between_neighbours(vertices, rows, around, share, out):
+    """Write whether vertices are on the way between two of their neighbours, for all pairs of them in order.
+
+    The way is longer than the distance by no more than a share of it.
+    """
+    for i in prange(len(rows)):
+        pair = 0
+        for j in range(around.shape[1]):
+            for k in range(j + 1, around.shape[1]):
+                whole = math.sqrt(squared_distance(vertices, around[i, j], around[i, k]))
+                way = math.sqrt(squared_distance(vertices, rows[i], around[i, j]))
+                way += math.sqrt(squared_distance(vertices, rows[i], around[i, k]))
+                out[pair, i] = way - whole <= share * whole
+                pair += 1
+
+
 @lean
 def spokes(w, is_centre, offsets):
     """Rows of the neighbours of w that a stencil grows to: all of them, but none through a hub."""
