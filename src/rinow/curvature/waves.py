@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.flow import CurvatureFlow
+from rinow.kernels import smoothing
 
 __all__ = ["LADDER", "ORDER", "REFERENCE", "Waves", "passed", "window"]
 
@@ -68,20 +69,20 @@ class Waves:
 
     def sums(self, windows: Sequence[Floats]) -> list[Floats]:
         """Of each window the sum of coefficient times wave; nan for a vertex without data around it."""
-        totals = [np.zeros(len(self.start)) for _ in windows]
+        totals = np.zeros((len(windows), len(self.start)))
         for j, wave in enumerate(self._first(max(len(c) for c in windows))):
-            for total, c in zip(totals, windows, strict=True):
-                if j < len(c):
-                    total += c[j] * wave
-        return totals
+            rows = np.array([i for i, c in enumerate(windows) if j < len(c)])
+            smoothing.add_multiples(rows, np.array([windows[i][j] for i in rows]), wave, totals)
+        return list(totals)
 
     def _first(self, n: int) -> Iterator[Floats]:
         """The first n waves."""
         yield from self._kept[:n]
         last, current = self._kept[-2:] if len(self._kept) > 1 else (self._kept[0], self._kept[0])
         for j in range(len(self._kept), n):
-            half = (2.0 * self._flow.step(current) - (1.0 + LEAST) * current) / (1.0 - LEAST)
-            last, current = current, half if j == 1 else 2.0 * half - last
+            following = self._flow.step(current)
+            smoothing.next_wave(current, last, LEAST, j == 1, following)
+            last, current = current, following
             if j < KEPT:
                 self._kept.append(current)
             yield current
