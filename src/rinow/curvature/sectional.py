@@ -190,23 +190,28 @@ def blended_patches(
     here = Found(frames, choice, np.ones(len(centres)))
     del between, low, top, logs, pilot, torus, plane  # the searches need the memory
     search_both(sheet, ladder, known, (here, there), also, beside, quality.selects, tasks)
-    (frames, choice, least), rows = blended(here, there, also)
-    del here, there
-    centres, core, at_centres = centres[rows], core[rows], at_centres[rows]
-    rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
-    np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
-    totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
-    fitting = ladder.fitting(
-        patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
-    )
-    expected = in_half_octaves(choice.risk, sheet.spacing[centres] ** -4)
-    weights = expected**-quality.power * in_half_octaves(least, np.ones(1)) ** (EDGE_POWER - quality.power)
-    add_patches(fitting, CORE * core, expected, weights, totals, tasks, 0.2)
-    values = Values.of(totals, sheet.normals)
-    del totals
+    found, rows = blended(here, there, also)
+    del frames, choice, here, there
+    values = _means_of_patches(sheet, ladder, quality, found, (centres[rows], core[rows], at_centres[rows]), tasks)
+    del found
     density = quality.share, quality.least, quality.power
     look_again(sheet, ladder, values, samples.turns, noise, at_edge, density, tasks)
     return values, noise
+
+
+def _means_of_patches(
+    sheet: balls.Sheet, ladder: Ladder, quality: Quality, found: Found, place: tuple[Ints, Floats, Floats], tasks: Tasks
+) -> Values:
+    """The weighted means of what patches tell: fits about centres, of which radius and noise are known as well."""
+    (frames, choice, least), (centres, core, noise) = found, place
+    rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
+    np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
+    totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
+    fitting = ladder.fitting(patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, noise)
+    expected = in_half_octaves(choice.risk, sheet.spacing[centres] ** -4)
+    weights = expected**-quality.power * in_half_octaves(least, np.ones(1)) ** (EDGE_POWER - quality.power)
+    add_patches(fitting, CORE * core, expected, weights, totals, tasks, 0.2)
+    return Values.of(totals, sheet.normals)
 
 
 def in_half_octaves(variances: Floats, unit: Floats) -> Floats:
