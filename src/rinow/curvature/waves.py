@@ -69,11 +69,12 @@ class Waves:
 
     def sums(self, windows: Sequence[Floats]) -> list[Floats]:
         """Of each window the sum of coefficient times wave; nan for a vertex without data around it."""
-        totals = np.zeros((len(windows), len(self.start)))
+        totals = [np.zeros(len(self.start)) for _ in windows]
         for j, wave in enumerate(self._first(max(len(c) for c in windows))):
-            rows = np.array([i for i, c in enumerate(windows) if j < len(c)])
-            smoothing.add_multiples(rows, np.array([windows[i][j] for i in rows]), wave, totals)
-        return list(totals)
+            for total, c in zip(totals, windows, strict=True):
+                if j < len(c):
+                    smoothing.add_multiple(c[j], wave, total)
+        return totals
 
     def _first(self, n: int) -> Iterator[Floats]:
         """The first n waves."""

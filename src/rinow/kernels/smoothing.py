@@ -158,11 +158,10 @@ def next_wave(current, last, least, is_second, steps):
 
 
 @parallel_kernel
-def add_multiples(rows, factors, wave, totals):
-    """Add multiples of a wave to some rows of totals (m, n)."""
+def add_multiple(factor, wave, total):
+    """Add a multiple of a wave to a total."""
     for v in prange(len(wave)):
-        for k in range(len(rows)):
-            totals[rows[k], v] += factors[k] * wave[v]
+        total[v] += factor * wave[v]
 
 
 @parallel_kernel
