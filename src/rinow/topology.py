@@ -9,12 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow._arrays import read_only
-from rinow.kernels import adjacency
+from rinow.kernels import adjacency, edge_numbers
 
 __all__ = ["Topology", "clusters"]
 
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
+
+PIECES = 64
+"""Parts that half-edges are counted in, by any thread."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,14 +80,19 @@ class Topology:
     @cached_property
     def edge_halfedges(self) -> Indices:
         """(n_edges,): the first half-edge of each edge."""
-        first = self._halfedge_edges[1]
-        return read_only(np.flatnonzero(first == np.arange(len(first))))
+        first, starts = self._halfedge_edges[1], np.zeros(PIECES + 1, np.intp)
+        edge_numbers.count_edges(first, starts[1:])
+        np.cumsum(starts, out=starts)
+        halfedges = np.empty(starts[-1], np.intp)
+        edge_numbers.list_edges(first, starts, halfedges)
+        return read_only(halfedges)
 
     def edge_of_halfedge(self) -> Indices:
         """(3 n_faces,): number of the edge of each half-edge; -1 for faces that take no part.  It is not kept."""
         first, numbers = self._halfedge_edges[1], np.empty(3 * len(self.faces), np.intp)
-        numbers[self.edge_halfedges] = np.arange(self.n_edges)
-        return read_only(np.where(first >= 0, numbers[first], -1))
+        edge_numbers.number_first_halfedges(self.edge_halfedges, numbers)
+        edge_numbers.number_other_halfedges(first, numbers)
+        return read_only(numbers)
 
     @property
     def n_edges(self) -> int:
@@ -94,7 +102,9 @@ class Topology:
     @cached_property
     def edges(self) -> Indices:
         """(n_edges, 2): the end points of each edge, in the direction of its first half-edge."""
-        return read_only(self.halfedge_ends(self.edge_halfedges))
+        ends = np.empty((self.n_edges, 2), np.intp)
+        edge_numbers.ends_of_edges(self.faces, self.edge_halfedges, ends)
+        return read_only(ends)
 
     def halfedge_ends(self, halfedges: Indices) -> Indices:
         """(k, 2): start and end vertex of half-edges."""
@@ -165,7 +175,7 @@ class Topology:
     @property
     def is_closed(self) -> bool:
         """Whether the surface is non-empty and no edge has just one face."""
-        return self.n_edges > 0 and not self.edge_is_boundary.any()
+        return self.n_edges > 0 and not len(self.boundary_halfedges)
 
     @cached_property
     def _orientation(self) -> tuple[Bools, bool]:
@@ -209,6 +219,9 @@ def clusters(n: int, pairs: Indices) -> tuple[Indices, Indices]:
 
     links = coo_array((np.ones(len(pairs), np.bool_), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
     labels = connected_components(links, directed=False)[1]
-    _, first, cluster = np.unique(labels, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    return first[order], np.argsort(order)[cluster].astype(np.intp)
+    first = np.empty(int(labels.max(initial=-1)) + 1, np.intp)
+    first[labels[::-1]] = np.arange(n)[::-1]  # of several vertices the last one that is written stays
+    order = np.argsort(first, kind="stable")  # fast, for they often are in order
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return first[order], rank[labels]

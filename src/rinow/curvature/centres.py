@@ -8,13 +8,18 @@ from numpy.typing import NDArray
 from rinow.curvature.sheet import sorted_by
 from rinow.kernels import balls, covers
 
-__all__ = ["CORE", "cover", "flat_frames", "members_of_discs", "sizes_of_discs", "turns"]
+__all__ = ["CORE", "DENSE", "cover", "flat_frames", "members_of_discs", "sizes_of_discs", "turns"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 CORE = 1.4
 """Radius of the part of a patch that is used, over the radius within which the centre is the only one."""
+DENSE = 6.0
+"""Vertices in a disc over its squared radius in spacings: 3.6 in a mesh of equilateral triangles, rarely above 5."""
+WIDEST, PORTIONS = 64, 8
+"""Vertices of a disc up to which it is grown before it is known whether it is needed, on all threads, and how many
+times as many as the discs grown together hold there are at least, so that most of them are."""
 MOST_TIED = 500
 """Stars of equal shape that become centres together."""
 
@@ -51,9 +56,19 @@ def cover(sheet: balls.Sheet, candidates: Ints, radii: Floats) -> Ints:
     radii : (n,) ndarray of float
         Radius a vertex covers, in spacings.
     """
-    centres = np.empty(len(radii), np.int32)
-    count = covers.cover(candidates, radii * sheet.spacing, sheet, centres)
-    return np.sort(centres[:count])
+    n, lengths, centres = len(sheet.vertices), radii * sheet.spacing, [np.empty(0, np.int32)]
+    marks, room, is_covered = np.zeros(n, np.int32), np.empty(n + 1, np.int32), np.zeros(n, np.bool_)
+    size = int(DENSE * radii.max(initial=0.0) ** 2) + 1
+    width, most = size if size <= WIDEST else 1, n // (PORTIONS * size) + 1
+    first, epoch, found = 0, 1, np.empty(n, np.int32)
+    while first < len(candidates):
+        count, first = covers.next_uncovered(candidates, first, most, is_covered, found)
+        counts, members = np.empty(count, np.int32), np.empty((count, width), np.int32)
+        covers.small_discs(found[:count], lengths, sheet, counts, members)
+        place = marks, room, epoch, is_covered
+        centres.append(found[: covers.settle(found[:count], counts, members, lengths, sheet, *place)].copy())
+        epoch += count
+    return np.sort(np.concatenate(centres))
 
 
 def sizes_of_discs(sheet: balls.Sheet, sources: Ints, radii: Floats) -> Ints:

@@ -100,7 +100,8 @@ def cleaned(points: Floats) -> tuple[Near, Bools, Bools]:
     is_far = close > FAR * np.median(close[near.indices[:, :N_NEAR]], axis=1)
     normals, offsets, middles, largest = np.empty_like(points), np.empty(n), np.empty(n), np.empty(n)
     clouds.plane_normals(points, near.indices, NEAREST, normals)
-    cloud_strays.offsets(points, normals, near.indices, near.distances[:, -1], N_BLOCKS, offsets, middles, largest)
+    around_each = near.indices, near.distances[:, -1]
+    cloud_strays.offsets(np.arange(n), points, normals, *around_each, N_BLOCKS, offsets, middles, largest)
     spacing = np.sqrt(np.pi / (NEAREST + 0.5)) * near.distances[:, -1]
     is_beside = offsets > np.maximum(DEVIATIONS * np.median(middles[near.indices], axis=1), SPACINGS * spacing)
     is_alone = np.count_nonzero(is_beside[near.indices[:, :N_NEAR]], axis=1) <= ALONE

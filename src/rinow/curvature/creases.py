@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from rinow._arrays import read_only
 from rinow.curvature.exact_facets import ends_of_facets
-from rinow.curvature.stencils import N_BLOCKS
+from rinow.curvature.stencils import N_BLOCKS, ring_means
 from rinow.curvature.voxels import is_voxel_surface
-from rinow.kernels import crease_lines, creases, edge_noise, stencils
+from rinow.kernels import crease_lines, creases, edge_noise, edge_numbers
 from rinow.mesh import TriangleMesh
 
 __all__ = ["CreaseLines", "EdgeTurnings", "crease_lines_of"]
@@ -96,16 +96,15 @@ class EdgeTurnings:
     @cached_property
     def height_noise(self) -> Floats:
         """(n_edges,): standard deviation of the heights of the vertices around each edge, a length."""
-        t, n = self.mesh.topology, self.mesh.n_vertices
-        noise, sums = np.empty(n), np.empty(n)
+        t, noise = self.mesh.topology, np.empty(self.mesh.n_vertices)
         edge_noise.height_noise(
             self.turnings, self.gains, self.edge_of_halfedge, t.corner_offsets, t.vertex_corners, N_BLOCKS, noise
         )
-        for _ in range(NOISE_RINGS):
-            stencils.ring_sums(noise, t.neighbour_offsets, t.neighbours, sums)
-            noise = sums / (np.diff(t.neighbour_offsets) + 1)
-        noise[t.edges[self.ends_facet]] = 0.0
-        return read_only(noise[t.edges].mean(axis=1))
+        noise = ring_means(self.mesh, noise, NOISE_RINGS)
+        noise[t.halfedge_ends(self.halfedges[self.ends_facet])] = 0.0
+        at_edges = np.empty(len(self.halfedges))
+        edge_numbers.means_of_ends(noise, self.mesh.faces, self.halfedges, at_edges)  # the mesh would keep `edges`
+        return read_only(at_edges)
 
     @cached_property
     def noise(self) -> Floats:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.rounding import file_rounding
+from rinow.kernels import edge_noise
 from rinow.mesh import TriangleMesh
 from rinow.topology import clusters
 
@@ -43,19 +44,18 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     The smaller facet beside an edge is a step if it turns the other way at its far side.  Surfaces of voxels consist of
     steps, whose treads are flat facets of a surface that is none.
     """
-    with np.errstate(invalid="ignore"):
-        is_sharp, is_flat = np.abs(turnings) >= SHARP, np.abs(turnings) <= file_rounding(mesh) * gains
-    other = mesh.topology.partners[halfedges]
-    is_sharp &= other >= 0
-    is_flat &= other >= 0
+    is_sharp, is_flat = np.empty((2, len(halfedges)), np.bool_)
+    edge_noise.compare_turnings(turnings, gains, SHARP, file_rounding(mesh), is_sharp, is_flat)
     if not is_sharp.any() or np.count_nonzero(is_flat) < LARGE:
-        return np.zeros(len(other), np.bool_)
+        return np.zeros(len(halfedges), np.bool_)
+    beside = halfedges[is_flat]
+    facet_of_face = _facets(mesh.n_faces, np.stack([beside, mesh.topology.partners[beside]], axis=1) // 3)
+    if facet_of_face is None:
+        return np.zeros(len(halfedges), np.bool_)
+    is_large = (np.bincount(facet_of_face) >= LARGE)[facet_of_face]
+    other = mesh.topology.partners[halfedges]
     sides = np.stack([halfedges // 3, np.where(other >= 0, other // 3, halfedges // 3)])
     angles = np.where(other >= 0, np.nan_to_num(turnings), 0.0)
-    facet_of_face = clusters(mesh.n_faces, sides[:, is_flat].T)[1]
-    is_large = (np.bincount(facet_of_face) >= LARGE)[facet_of_face]
-    if not is_large.any():
-        return np.zeros(len(other), np.bool_)
     facets, is_large = facet_of_face[sides], is_large[sides]
     ends = is_sharp & is_large.any(axis=0)
     sharp = np.flatnonzero(ends)
@@ -63,6 +63,17 @@ def ends_of_facets(mesh: TriangleMesh, turnings: Floats, gains: Floats, halfedge
     smaller = np.where(areas[0] < areas[1], facets[0, sharp], facets[1, sharp])
     ends[sharp] = ~_begin_steps(sharp, smaller, mesh, angles, facets)
     return ends
+
+
+def _facets(n_faces: int, pairs: Indices) -> Indices | None:
+    """(n_faces,): the first face of the facet of each face, for pairs of faces in one plane; None if all are small."""
+    joined, places = np.unique(pairs, return_inverse=True)
+    first, facet = clusters(len(joined), places.reshape(-1, 2))
+    if np.bincount(facet).max(initial=0) < LARGE:
+        return None
+    facet_of_face = np.arange(n_faces)
+    facet_of_face[joined] = joined[first[facet]]
+    return facet_of_face
 
 
 def _begin_steps(edges: Indices, beside: Indices, mesh: TriangleMesh, angles: Floats, facets: Indices) -> Bools:

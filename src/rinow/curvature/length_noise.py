@@ -68,7 +68,8 @@ class LengthNoise:
         squares = passed(coefficients, np.exp(-0.5 * TIMES)) ** 2 * TIMES**3
         integrals = 0.5 * np.exp(-np.multiply.outer(STARTS, TIMES)) @ squares * np.log(TIMES[1] / TIMES[0])
         with np.errstate(all="ignore"):
-            at_start = np.interp(np.log(self.start / self.step), np.log(STARTS), np.log(integrals))
+            at_start = np.log(self.start / self.step)
+            smoothing.interpolate(at_start, np.log(STARTS), np.log(integrals))
             return GAUSSIAN * self.density * np.exp(at_start) / self.step**3
 
     def level(self, flow: CurvatureFlow, waves: Waves) -> Floats:

@@ -143,7 +143,8 @@ def mesh_notes(mesh: TriangleMesh | IntrinsicMesh, *, oriented: bool) -> tuple[s
 
 def _rounding_notes(mesh: TriangleMesh) -> list[str]:
     """Coordinates that are so large that their rounding is noise."""
-    lengths = mesh.edge_lengths[mesh.topology.face_used]
+    used = mesh.topology.face_used
+    lengths = mesh.edge_lengths if used.all() else mesh.edge_lengths[used]
     share = coordinate_rounding(mesh) / float(np.mean(lengths)) if lengths.any() else 0.0
     if not ROUNDED < share < np.inf:
         return []

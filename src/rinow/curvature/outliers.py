@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -60,7 +58,7 @@ def outlying_vertices(mesh: TriangleMesh) -> list[int]:
             continue
         if any(abs(defects[w]) > left for w in around - zone):
             continue
-        trials = {u: max(_defects_without(edited, defects, u, zone), default=np.inf) for u in sorted(zone)}
+        trials = {u: _largest_without(edited, defects, u, zone, left) for u in sorted(zone)}
         best = min(trials, key=lambda u: trials[u])
         if trials[best] <= left and _is_far(edited, best, around - {best}, _noise(mesh, defects, around, zone)):
             found.append(best)
@@ -73,16 +71,23 @@ def _neighbours(mesh: Mesh, vertex: int) -> list[int]:
     return t.neighbours[t.neighbour_offsets[vertex] : t.neighbour_offsets[vertex + 1]].tolist()
 
 
-def _defects_without(edited: EditedFaces, defects: Floats, vertex: int, zone: set[int]) -> Iterator[float]:
-    """Sizes of the defects around when the star of a vertex is filled; none if it cannot be."""
-    new = fill_without(edited, vertex)
-    if new is None:
-        return
+def _largest_without(edited: EditedFaces, defects: Floats, vertex: int, zone: set[int], most: float) -> float:
+    """Largest defect around when the star of a vertex is filled; inf if it cannot be, or above `most`."""
     star = [edited.face(number) for number in edited.star(vertex)]
     ring = {v for face in star for v in face} - {vertex}
+    if any(abs(defects[v]) > most for v in zone - ring - {vertex}):  # the fill does not touch these
+        return np.inf
+    new = fill_without(edited, vertex)
+    if new is None:
+        return np.inf
+    largest = 0.0
     for v in (zone | ring) - {vertex}:
         change = sum(_angle_at(edited, face, v) for face in star) - sum(_angle_at(edited, face, v) for face in new)
-        yield abs(float(defects[v]) + change)
+        defect = abs(float(defects[v]) + change)
+        if not defect <= most:
+            return np.inf
+        largest = max(largest, defect)
+    return largest
 
 
 def _angle_at(edited: EditedFaces, face: Face, vertex: int) -> float:

@@ -113,7 +113,8 @@ def add_patches(
         parts.append(slice(first, min(max(last, first + 1), len(cores))))
         first = parts[-1].stop
     for _, (vertices, values) in tasks.run(partial(_values_of, fitting, cores, risks, weights), parts, share):
-        patches.add_values(vertices, values, ADDING, totals)
+        least = int(vertices.view(np.uint32).min(initial=len(totals)))  # no value has the vertex -1, then the greatest
+        patches.add_values(vertices, values, least, int(vertices.max(initial=-1)), ADDING, totals)
         del vertices, values
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.caps import ON_EDGE, AmidEdge
+from rinow.kernels import stencils
 from rinow.mesh import TriangleMesh
 
 __all__ = ["CREASED", "has_continuation", "redundant_vertices"]
@@ -96,11 +97,10 @@ def _in_triangles(mesh: TriangleMesh, vertices: Indices, around: Indices) -> lis
 
 def _on_edges(mesh: TriangleMesh, vertices: Indices, around: Indices) -> list[AmidEdge]:
     """Those that lie between two of their four neighbours, on a line that ends there."""
-    V, found = mesh.vertices, list[AmidEdge]()
-    spokes = np.linalg.norm(V[around] - V[vertices][:, None], axis=2)
-    for i, j in ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)):
-        whole = np.linalg.norm(V[around[:, i]] - V[around[:, j]], axis=1)
-        rows = np.flatnonzero(spokes[:, i] + spokes[:, j] - whole <= ON_EDGE * whole)
+    found, is_between = list[AmidEdge](), np.empty((6, len(vertices)), np.bool_)
+    stencils.between_neighbours(mesh.vertices, vertices, around, ON_EDGE, is_between)
+    for (i, j), between in zip(((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), is_between, strict=True):
+        rows = np.flatnonzero(between)
         if len(rows):
             rows = rows[_is_curved(mesh, around[rows])]
         places = np.stack([vertices[rows], around[rows, i], around[rows, j]], axis=1).tolist()

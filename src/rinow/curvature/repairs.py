@@ -12,7 +12,7 @@ from rinow.curvature.cracks import closed_cracks, lie_on_each_other
 from rinow.curvature.crossings import partners_across
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.notes import crack_notes, merge_notes, repeat_notes, sheet_notes, weld_notes
-from rinow.kernels import cuts
+from rinow.kernels import cuts, triangles
 from rinow.kernels.adjacency import BOUNDARY, NONMANIFOLD
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 from rinow.topology import clusters
@@ -108,10 +108,8 @@ def _merged(mesh: Mesh, pairs: Indices) -> tuple[Mesh, Indices]:
 def _edges_without_length(mesh: Mesh) -> Indices:
     """(k, 2): ends of edges that are points beside the other sides of all their faces."""
     t, share = mesh.topology, POINT if isinstance(mesh, TriangleMesh) else 0.0
-    a, b, c = mesh.edge_lengths.T
-    with np.errstate(invalid="ignore"):
-        short = np.stack([x <= share * np.minimum(y, z) for x, y, z in ((c, a, b), (a, b, c), (b, c, a))], axis=1)
-    short[~t.face_used] = False
+    short = np.empty((mesh.n_faces, 3), np.bool_)
+    triangles.short_sides(mesh.edge_lengths, share, t.face_used, short)
     h = np.flatnonzero(short)  # in the order of the half-edges
     other = t.partners[h]
     return t.halfedge_ends(h[(other < 0) | short.ravel()[other]])

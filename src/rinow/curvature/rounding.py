@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rinow.mesh import TriangleMesh
 
@@ -10,6 +11,8 @@ __all__ = ["coordinate_rounding", "file_rounding"]
 
 SINGLE, DOUBLE = 2.0**-24, 2.0**-53
 """Largest relative error of a number that is rounded to 24 bits, as most files keep them, and to 53 bits."""
+PART = 1 << 14
+"""Rows of coordinates that are looked at together."""
 COORDINATES = 4.0
 """Errors of coordinates over their rounding at the size of the mesh that a position is off by at the most."""
 
@@ -19,9 +22,15 @@ def coordinate_rounding(mesh: TriangleMesh) -> float:
 
     It is 0 for a mesh without any coordinate but 0.
     """
-    V = mesh.vertices[mesh.vertex_is_finite]
-    largest = float(np.abs(V).max(initial=0.0))
-    return largest * (SINGLE if 0.0 < largest < 1e38 and np.array_equal(V, V.astype(np.float32)) else DOUBLE)
+    V = mesh.vertices if mesh.vertex_is_finite.all() else mesh.vertices[mesh.vertex_is_finite]
+    largest = max(float(V.max(initial=0.0)), -float(V.min(initial=0.0)))
+    return largest * (SINGLE if 0.0 < largest < 1e38 and _are_single(V) else DOUBLE)
+
+
+def _are_single(values: NDArray[np.float64]) -> bool:
+    """Whether all are numbers of 24 bits; a part tells that they are not."""
+    parts = (values[i : i + PART] for i in range(0, len(values), PART))
+    return all(np.array_equal(part, part.astype(np.float32)) for part in parts)
 
 
 def file_rounding(mesh: TriangleMesh) -> float:

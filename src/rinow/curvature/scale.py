@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rinow.curvature.centres import cover, flat_frames, members_of_discs, turns
+from rinow.curvature.centres import DENSE, cover, flat_frames, members_of_discs, turns
 from rinow.curvature.charts import MEAN_ORDER, WIDER, Choice, log_ratios, lower
 from rinow.curvature.lack_of_fit import squared_biases_by_residuals
 from rinow.curvature.patch_tasks import Fitting, Tasks, fill_tables, fit_frames
@@ -33,8 +33,6 @@ ROUNDING = 1e-15
 """Least noise, in spacings."""
 NEAR, AROUND = 1.5, 2.2
 """Reach of a sample over the vertices it speaks for, and over the samples it is averaged with, in radii it covers."""
-DENSE = 6.0
-"""Vertices in a disc over its squared radius in spacings: 3.6 in a mesh of equilateral triangles, rarely above 5."""
 
 LADDER = np.array([1.6, 2.0, 2.5, 3.1, 3.8, 4.7, 5.8, 7.2, 9.0, 11.2, 14.0, 17.0])
 """Radii of balls, in spacings."""

@@ -22,7 +22,7 @@ from rinow.curvature.second_look import Values, look_again
 from rinow.curvature.sheet import patch_sheet
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.strays import spikes, stray_vertices
-from rinow.kernels import balls, patch_driver, patches, risks
+from rinow.kernels import balls, patch_driver, patch_order, patches, risks
 from rinow.mesh import TriangleMesh
 
 __all__ = [
@@ -142,9 +142,9 @@ def sectional(
     out, direction1, direction2, first, _, steps = values
     out[:, 0] *= shrinkage(samples, values)
     columns = *out[:, :5].T, standard_errors(out, QUALITIES[quality], mesh.topology.vertex_is_boundary[index])
-    gaussian, mean, risk, reach, height, spread = (_spread_out(column, index, mesh.n_vertices) for column in columns)
-    direction1, direction2 = (_spread_out(d, index, mesh.n_vertices) for d in (direction1, direction2))
-    noise, spacing, first = (_spread_out(x, index, mesh.n_vertices) for x in (np.sqrt(noise), sheet.spacing, first))
+    gaussian, mean, risk, reach, height, spread = (_spread_out(column[:, None], index, n) for column in columns)
+    direction1, direction2 = (_spread_out(d, index, n) for d in (direction1, direction2))
+    noise, spacing, first = (_spread_out(x[:, None], index, n) for x in (np.sqrt(noise), sheet.spacing, first))
     half = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
     principal = mean + half, mean - half, direction1, direction2
     estimate = Estimate(gaussian, spread, reach, mean, *principal, noise, spacing, risk, height, first)
@@ -190,23 +190,28 @@ def blended_patches(
     here = Found(frames, choice, np.ones(len(centres)))
     del between, low, top, logs, pilot, torus, plane  # the searches need the memory
     search_both(sheet, ladder, known, (here, there), also, beside, quality.selects, tasks)
-    (frames, choice, least), rows = blended(here, there, also)
-    del here, there
-    centres, core, at_centres = centres[rows], core[rows], at_centres[rows]
-    rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
-    np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
-    totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
-    fitting = ladder.fitting(
-        patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, at_centres
-    )
-    expected = in_half_octaves(choice.risk, sheet.spacing[centres] ** -4)
-    weights = expected**-quality.power * in_half_octaves(least, np.ones(1)) ** (EDGE_POWER - quality.power)
-    add_patches(fitting, CORE * core, expected, weights, totals, tasks, 0.2)
-    values = Values.of(totals, sheet.normals)
-    del totals
+    found, rows = blended(here, there, also)
+    del frames, choice, here, there
+    values = _means_of_patches(sheet, ladder, quality, found, (centres[rows], core[rows], at_centres[rows]), tasks)
+    del found
     density = quality.share, quality.least, quality.power
     look_again(sheet, ladder, values, samples.turns, noise, at_edge, density, tasks)
     return values, noise
+
+
+def _means_of_patches(
+    sheet: balls.Sheet, ladder: Ladder, quality: Quality, found: Found, place: tuple[Ints, Floats, Floats], tasks: Tasks
+) -> Values:
+    """The weighted means of what patches tell: fits about centres, of which radius and noise are known as well."""
+    (frames, choice, least), (centres, core, noise) = found, place
+    rows, radius = np.zeros(len(centres) + 1, np.int64), np.maximum(choice.radius, 0)
+    np.cumsum(sizes_of_discs(sheet, centres, CORE * core), out=rows[1:])
+    totals = np.zeros((len(sheet.vertices), patches.N_VALUES + 1))
+    fitting = ladder.fitting(patch_driver.VALUES, sheet, centres, frames, radius, radius, choice.order, rows, noise)
+    expected = in_half_octaves(choice.risk, sheet.spacing[centres] ** -4)
+    weights = expected**-quality.power * in_half_octaves(least, np.ones(1)) ** (EDGE_POWER - quality.power)
+    add_patches(fitting, CORE * core, expected, weights, totals, tasks, 0.2)
+    return Values.of(totals, sheet.normals)
 
 
 def in_half_octaves(variances: Floats, unit: Floats) -> Floats:
@@ -256,8 +261,8 @@ def _sizes_of_components(mesh: TriangleMesh) -> NDArray[np.int32]:
     return np.bincount(component + 1).astype(np.int32)[component + 1]
 
 
-def _spread_out(values: Floats, index: NDArray[np.intp], n: int) -> Floats:
-    """Values of the sheet in the order of the mesh, nan elsewhere."""
-    out = np.full((n, *values.shape[1:]), np.nan)
-    out[index] = values
-    return out
+def _spread_out(rows: Floats, index: NDArray[np.intp], n: int) -> Floats:
+    """Values of the sheet in the order of the n vertices of the mesh, nan elsewhere."""
+    out = np.full((n, rows.shape[1]), np.nan)
+    patch_order.spread_out(rows, index, out)
+    return out if rows.shape[1] > 1 else out[:, 0]

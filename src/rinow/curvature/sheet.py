@@ -52,11 +52,10 @@ def morton_order(points: NDArray[np.float64]) -> NDArray[np.int32]:
 
 
 def sorted_by(keys: NDArray[np.uint32]) -> NDArray[np.int32]:
-    """The stable order of keys, by sorting numbers: several times as fast as `argsort`."""
-    low = np.uint64(32)
-    pairs = (keys.astype(np.uint64) << low) | np.arange(len(keys), dtype=np.uint64)
-    pairs.sort()
-    return pairs.astype(np.uint32).view(np.int32)
+    """The stable order of keys, many times as fast as `argsort`."""
+    order = np.empty(len(keys), np.int32)
+    patch_order.stable_order(keys, order)
+    return order
 
 
 def _rows(

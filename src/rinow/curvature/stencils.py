@@ -65,10 +65,10 @@ def ring_means(
     mesh: TriangleMesh, values: NDArray[np.float64], passes: int, *, itself: bool = True
 ) -> NDArray[np.float64]:
     """Means over each vertex and its neighbours, or the neighbours alone, taken `passes` times."""
-    count = np.maximum(np.diff(mesh.topology.neighbour_offsets) + (1 if itself else 0), 1)
-    for _ in range(passes):
-        sums = _ring_sums(mesh, values)
-        values = (sums if itself else sums - values) / count
+    t, room = mesh.topology, np.empty((2, mesh.n_vertices))  # twice the same memory is faster than new one
+    for i in range(passes):
+        stencils.ring_averages(values, itself, t.neighbour_offsets, t.neighbours, room[i % 2])
+        values = room[i % 2]
     return values
 
 

@@ -21,6 +21,8 @@ Indices = NDArray[np.intp]
 
 ALONE = 4.0
 """Square of a height over the neighbours, over the mean square of theirs, from which on it may be a spike."""
+LEAF = 32
+"""Points of a leaf of the tree of all vertices, which few are sought in: to make it takes longer than to search it."""
 
 
 def stray_vertices(mesh: TriangleMesh) -> tuple[Bools, Indices, Indices]:
@@ -58,19 +60,18 @@ def spikes(sheet: balls.Sheet) -> tuple[Indices, Indices]:
     ring much more than its other members from theirs.
     """
     none = np.empty(0, np.intp)
-    height, sums = np.empty((2, len(sheet.spacing)))
+    height, stands_out = np.empty(len(sheet.spacing)), np.empty(len(sheet.spacing), np.bool_)
     stencils.heights_over_rings(sheet.vertices, sheet.normals, sheet.offsets, sheet.neighbours, height)
-    stencils.ring_sums(height**2, sheet.offsets, sheet.neighbours, sums)
-    around = (sums - height**2) / np.maximum(np.diff(sheet.offsets), 1)
-    likely = np.flatnonzero((np.abs(height) > 0.5 * SPACINGS * sheet.spacing) & (height**2 > ALONE * around))
+    stencils.stand_out(height, 0.5 * SPACINGS * sheet.spacing, ALONE, sheet.offsets, sheet.neighbours, stands_out)
+    likely = np.flatnonzero(stands_out)
     if not len(likely) or len(height) <= NEAREST:
         return none, none
-    found_near: tuple[Any, Any] = KDTree(sheet.vertices).query(sheet.vertices[likely], NEAREST + 1)
+    tree = KDTree(sheet.vertices, LEAF, compact_nodes=False, balanced_tree=False)
+    found_near: tuple[Any, Any] = tree.query(sheet.vertices[likely], NEAREST + 1)
     distances, near = found_near
     offsets, middles, largest = np.empty((3, len(likely)))
-    points, normals = (np.concatenate([x[likely], x]) for x in (sheet.vertices, sheet.normals))
-    reach = np.ascontiguousarray(distances[:, -1])
-    cloud_strays.offsets(points, normals, near[:, 1:] + len(likely), reach, N_BLOCKS, offsets, middles, largest)
+    around = np.ascontiguousarray(near[:, 1:]), np.ascontiguousarray(distances[:, -1])
+    cloud_strays.offsets(likely, sheet.vertices, sheet.normals, *around, N_BLOCKS, offsets, middles, largest)
     found = offsets > np.maximum(DEVIATIONS * middles, SPACINGS * sheet.spacing[likely])
     is_spike = np.isin(near[found], likely[found])
     return likely[found], near[found, np.argmin(is_spike, axis=1)]

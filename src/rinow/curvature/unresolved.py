@@ -67,9 +67,12 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     height = np.clip(estimate.height / spacing, -1.0, 1.0)
     if not np.fmax.reduce(np.abs(height), initial=0.0) > SMALL * OF_HEIGHTS[0] ** 0.5:  # no correlation exceeds that
         return estimate
+    share = _common_share(mesh, height, OF_HEIGHTS, SMALL)
+    if not share.any():
+        return estimate
     depth = np.sqrt(ring_means(mesh, np.nan_to_num(height) ** 2, PASSES))
     least = np.fmin(SMALL, DEEP * estimate.noise / spacing)
-    share = np.minimum(_common_share(mesh, height, OF_HEIGHTS, SMALL), _share_of(DEPTH, depth, least))
+    share = np.minimum(share, _share_of(DEPTH, depth, least))
     share[~np.isfinite(estimate.gaussian) | mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
     rings, has_steps = (mesh.topology.neighbour_offsets, mesh.topology.neighbours), share > 0.0
     if has_steps.any() and not EdgeTurnings(mesh).are_steps:
@@ -157,10 +160,13 @@ def _common_share(
     """
     r = np.where(np.isfinite(residual) & ~mesh.topology.vertex_is_boundary, residual, 0.0)
     product, square = r * ring_means(mesh, r, 1, itself=False), r * r + least * least
-    near = _share_of(correlations, ring_means(mesh, product, PASSES), ring_means(mesh, square, PASSES))
     component = mesh.topology.components + 1
     whole = _share_of(correlations, *(np.bincount(component, x).astype(np.float64) for x in (product, square)))
-    return np.minimum(near, np.round(STEPS * whole[component]) / STEPS)
+    whole = np.round(STEPS * whole) / STEPS
+    if not whole.any():
+        return np.zeros(mesh.n_vertices)
+    near = _share_of(correlations, ring_means(mesh, product, PASSES), ring_means(mesh, square, PASSES))
+    return np.minimum(near, whole[component])
 
 
 def _without_outliers(mesh: TriangleMesh, residual: Floats) -> Floats:

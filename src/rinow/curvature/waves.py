@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.flow import CurvatureFlow
+from rinow.kernels import smoothing
 
 __all__ = ["LADDER", "ORDER", "REFERENCE", "Waves", "passed", "window"]
 
@@ -72,7 +73,7 @@ class Waves:
         for j, wave in enumerate(self._first(max(len(c) for c in windows))):
             for total, c in zip(totals, windows, strict=True):
                 if j < len(c):
-                    total += c[j] * wave
+                    smoothing.add_multiple(c[j], wave, total)
         return totals
 
     def _first(self, n: int) -> Iterator[Floats]:
@@ -80,8 +81,9 @@ class Waves:
         yield from self._kept[:n]
         last, current = self._kept[-2:] if len(self._kept) > 1 else (self._kept[0], self._kept[0])
         for j in range(len(self._kept), n):
-            half = (2.0 * self._flow.step(current) - (1.0 + LEAST) * current) / (1.0 - LEAST)
-            last, current = current, half if j == 1 else 2.0 * half - last
+            following = self._flow.step(current)
+            smoothing.next_wave(current, last, LEAST, j == 1, following)
+            last, current = current, following
             if j < KEPT:
                 self._kept.append(current)
             yield current

@@ -57,19 +57,20 @@ def robust_fit(terms, heights, weights, residuals):
 
 
 @parallel_kernel
-def offsets(points, normals, near, reach, n_blocks, out, middles, largest):
-    """Write distances of the first points from quadrics through their neighbours, the median and largest one of these.
+def offsets(rows, points, normals, near, reach, n_blocks, out, middles, largest):
+    """Write distances of points[rows] from quadrics through their neighbours, the median and largest one of these.
 
-    Row v of `near` has the neighbours of points[v]; all are 0 where these are at one place or no normal is known.
+    Row i of `near` has the neighbours of points[rows[i]]; all are 0 where these are at one place or no normal is known.
     """
     for block in prange(n_blocks):
         n, k = near.shape
         terms, heights, weights, residuals = np.empty((k, 6)), np.empty(k), np.empty(k), np.empty(k)
-        for v in range(n * block // n_blocks, n * (block + 1) // n_blocks):
-            out[v], middles[v], largest[v] = 0.0, 0.0, 0.0
+        for i in range(n * block // n_blocks, n * (block + 1) // n_blocks):
+            out[i], middles[i], largest[i] = 0.0, 0.0, 0.0
+            v = rows[i]
             normal = (normals[v, 0], normals[v, 1], normals[v, 2])
-            if normal != (0.0, 0.0, 0.0) and reach[v] > 0.0:
-                local_terms(v, near[v], points, normal, reach[v], terms, heights)
+            if normal != (0.0, 0.0, 0.0) and reach[i] > 0.0:
+                local_terms(v, near[i], points, normal, reach[i], terms, heights)
                 height, middle = robust_fit(terms, heights, weights, residuals)
-                out[v], middles[v] = abs(height) * reach[v], middle * reach[v]
-                largest[v] = residuals.max() * reach[v]
+                out[i], middles[i] = abs(height) * reach[i], middle * reach[i]
+                largest[i] = residuals.max() * reach[i]

@@ -60,23 +60,69 @@ def disc(v, radius, epoch, vertices, offsets, neighbours, marks, members):
 
 
 @kernel
-def cover(candidates, radii, sheet, centres):
-    """Write each candidate that lies in the disc of none before those it is tied with; how many.
+def next_uncovered(candidates, first, most, is_covered, found):
+    """Write the next candidates that no disc covers, about so many; how many, and the place of the one after them.
 
-    A negative number ~v is that of a vertex v tied with the one before.
+    A negative number ~v is that of a vertex v tied with the one before; candidates that are tied stay together.
     """
-    n, last = len(sheet.vertices), len(candidates) - 1
-    marks, members, is_covered = np.zeros(n, np.int32), np.empty(n + 1, np.int32), np.zeros(n, np.bool_)
+    count, is_tied = 0, False
+    while first < len(candidates) and (count < most or candidates[first] < 0):
+        c = candidates[first]
+        is_tied &= c < 0
+        if not is_covered[max(c, ~c)]:
+            found[count] = ~max(c, ~c) if is_tied else max(c, ~c)
+            count, is_tied = count + 1, True
+        first += 1
+    return count, first
+
+
+@parallel_kernel
+def small_discs(candidates, radii, sheet, counts, members):
+    """Write the disc of each candidate to a row of members (n, room), as far as there is room, and its size.
+
+    A disc with more than room for it has a negative size.
+    """
+    vertices, offsets, neighbours, room = sheet.vertices, sheet.offsets, sheet.neighbours, members.shape[1]
+    for i in prange(len(candidates)):
+        own, v = members[i], max(candidates[i], ~candidates[i])
+        own[0] = v
+        far, first, last = radii[v] * radii[v], 0, 1
+        while first < last:
+            p, first = own[first], first + 1
+            for q in neighbours[offsets[p] : offsets[p + 1]]:
+                if last < 0 or not stencils.squared_distance(vertices, v, q) < far:
+                    continue
+                k = 0
+                while k < last and own[k] != q:
+                    k += 1
+                if k == last:
+                    if last < room:
+                        own[last] = q
+                    last = last + 1 if last < room else -1
+        counts[i] = last
+
+
+@kernel
+def settle(candidates, counts, members, radii, sheet, marks, room, epoch, is_covered):
+    """Move the candidates in the disc of none before those that they are tied with to the front; how many.
+
+    All their discs are covered then.  Those that had no room are grown again, with marks (n,) and room (n + 1,).
+    """
     surface, count, first = (sheet.vertices, sheet.offsets, sheet.neighbours), 0, 0
+    kept = np.empty(len(candidates), np.intp)
     for i in range(len(candidates)):
         v = max(candidates[i], ~candidates[i])
         if not is_covered[v]:
-            centres[count] = v
+            candidates[count], kept[count] = v, i
             count += 1
-        if i == last or candidates[i + 1] >= 0:
+        if i + 1 == len(candidates) or candidates[i + 1] >= 0:
             for k in range(first, count):
-                for m in range(disc(centres[k], radii[centres[k]], k + 1, *surface, marks, members)):
-                    is_covered[members[m]] = True
+                own, size = members[kept[k]], counts[kept[k]]
+                if size < 0:
+                    v = candidates[k]
+                    own, size = room, disc(v, radii[v], epoch + k, *surface, marks, room)
+                for m in range(size):
+                    is_covered[own[m]] = True
             first = count
     return count
 

@@ -28,6 +28,14 @@ def edge_gains(vertices, faces, partners, edge_halfedges, out):
             out[e] = math.sqrt(1.0 / mine**2 + 1.0 / theirs**2 + start * start + end * end)
 
 
+@parallel_kernel
+def compare_turnings(turnings, gains, sharp, rounding, is_sharp, is_flat):
+    """Write whether each edge turns by an angle, and by no more than heights that are rounded; both not without one."""
+    for e in prange(len(turnings)):
+        size = abs(turnings[e])
+        is_sharp[e], is_flat[e] = size >= sharp, gains[e] < np.inf and size <= rounding * gains[e]
+
+
 @kernel
 def middle_spread(values, n):
     """Smaller distance from 0 of the quartiles on its two sides, over that of the normal law; 0 if one side is empty.

@@ -4,6 +4,9 @@ import numpy as np
 
 from rinow.kernels._jit import kernel, lean, parallel_kernel, prange
 
+DIGITS = 1 << 11
+"""Values of a digit that numbers are sorted by."""
+
 
 @lean
 def spread_bits(x):
@@ -23,6 +26,36 @@ def morton_codes(points, low, size, codes):
             cell = min(int((points[i, axis] - low[axis]) / size * 1024), 1023)
             code |= spread_bits(cell) << axis
         codes[i] = code
+
+
+@kernel
+def stable_order(keys, order):
+    """Write the stable order of keys of 32 bits: they are sorted by their digits of 11 bits, the last ones first."""
+    n, last = len(keys), DIGITS - 1
+    places, pairs, spare = np.zeros((3, DIGITS + 1), np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
+    for i in range(n):
+        key = np.int64(keys[i])
+        pairs[i] = key << 31 | i
+        for k in range(3):
+            places[k, (key >> 11 * k & last) + 1] += 1
+    for k in range(3):
+        for digit in range(DIGITS):
+            places[k, digit + 1] += places[k, digit]
+        for i in range(n):
+            digit = pairs[i] >> 31 + 11 * k & last
+            spare[places[k, digit]] = pairs[i]
+            places[k, digit] += 1
+        pairs, spare = spare, pairs
+    for i in range(n):
+        order[i] = pairs[i] & 0x7FFFFFFF
+
+
+@parallel_kernel
+def spread_out(rows, index, out):
+    """Write each row to the place that the index says."""
+    for i in prange(len(rows)):
+        for k in range(rows.shape[1]):
+            out[index[i], k] = rows[i, k]
 
 
 @kernel

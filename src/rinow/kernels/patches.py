@@ -239,14 +239,15 @@ def add_row(i, values, v, totals):
 
 
 @parallel_kernel
-def add_values(vertices, values, n_blocks, totals):
+def add_values(vertices, values, least, most, n_blocks, totals):
     """Add the values of patches to the totals of their vertices; the last total is of the squared deviations of K.
 
-    Each block of vertices looks through all values for its own, so that they are added in their order.
+    Each block of the vertices from `least` to `most` looks through all values for its own, so that they are added in
+    their order.
     """
-    n = len(totals)
+    n = most + 1 - least
     for block in prange(n_blocks):
-        first, last = n * block // n_blocks, n * (block + 1) // n_blocks
+        first, last = least + n * block // n_blocks, least + n * (block + 1) // n_blocks
         for i in range(len(vertices)):
             if first <= vertices[i] < last:
                 add_row(i, values, vertices[i], totals)

@@ -149,6 +149,34 @@ def apply_rows(starts, columns, values, x, out):
         out[v] = total if starts[v + 1] > starts[v] else np.nan
 
 
+@parallel_kernel
+def next_wave(current, last, least, is_second, steps):
+    """Write the wave after two others in the place of the steps from the current one, of eigenvalues least..1."""
+    for v in prange(len(steps)):
+        half = (2.0 * steps[v] - (1.0 + least) * current[v]) / (1.0 - least)
+        steps[v] = half if is_second else 2.0 * half - last[v]
+
+
+@parallel_kernel
+def add_multiple(factor, wave, total):
+    """Add a multiple of a wave to a total."""
+    for v in prange(len(wave)):
+        total[v] += factor * wave[v]
+
+
+@parallel_kernel
+def interpolate(x, places, heights):
+    """Replace each number by the height of the line through points (places, heights) there, as `np.interp` does."""
+    last = len(places) - 1
+    for v in prange(len(x)):
+        if x[v] < places[last] and x[v] > places[0]:
+            j = np.searchsorted(places, x[v], "right") - 1
+            slope = (heights[j + 1] - heights[j]) / (places[j + 1] - places[j])
+            x[v] = slope * (x[v] - places[j]) + heights[j]
+        elif not math.isnan(x[v]):
+            x[v] = heights[0] if x[v] <= places[0] else heights[last]
+
+
 @kernel
 def column_sums(starts, columns, values, factors, out):
     """Write the sum of factor times value over each column, the factors belonging to the rows."""

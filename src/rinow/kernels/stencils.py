@@ -112,6 +112,17 @@ def ring_sums(values, offsets, neighbours, out):
 
 
 @parallel_kernel
+def ring_averages(values, itself, offsets, neighbours, out):
+    """Write the mean of values (n,) over the neighbours of each vertex, and over itself or not; 0 over none."""
+    for v in prange(offsets.shape[0] - 1):
+        total = values[v]
+        for i in range(offsets[v], offsets[v + 1]):
+            total += values[neighbours[i]]
+        count = offsets[v + 1] - offsets[v]
+        out[v] = total / (count + 1) if itself else (total - values[v]) / max(count, 1)
+
+
+@parallel_kernel
 def heights_over_rings(vertices, normals, offsets, neighbours, out):
     """Write the height of each vertex over the mean of its neighbours."""
     for v in prange(offsets.shape[0] - 1):
@@ -123,6 +134,19 @@ def heights_over_rings(vertices, normals, offsets, neighbours, out):
                 total += vertices[neighbours[i], axis]
             height += normals[v, axis] * (vertices[v, axis] - (total - vertices[v, axis]) / count)
         out[v] = height
+
+
+@parallel_kernel
+def stand_out(heights, least, ratio, offsets, neighbours, out):
+    """Write whether the height of a vertex exceeds a least one, and its square that of its neighbours by a ratio."""
+    for v in prange(offsets.shape[0] - 1):
+        out[v] = abs(heights[v]) > least[v]
+        if out[v]:
+            own = heights[v] * heights[v]
+            total = own
+            for i in range(offsets[v], offsets[v + 1]):
+                total += heights[neighbours[i]] * heights[neighbours[i]]
+            out[v] = own > ratio * ((total - own) / max(offsets[v + 1] - offsets[v], 1))
 
 
 @parallel_kernel
@@ -146,6 +170,23 @@ def squared_distance(vertices, i, j):
     """Squared Euclidean distance of vertices i and j."""
     x, y, z = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1], vertices[j, 2] - vertices[i, 2]
     return x * x + y * y + z * z
+
+
+@parallel_kernel
+def between_neighbours(vertices, rows, around, share, out):
+    """Write whether vertices are on the way between two of their neighbours, for all pairs of them in order.
+
+    The way is longer than the distance by no more than a share of it.
+    """
+    for i in prange(len(rows)):
+        pair = 0
+        for j in range(around.shape[1]):
+            for k in range(j + 1, around.shape[1]):
+                whole = math.sqrt(squared_distance(vertices, around[i, j], around[i, k]))
+                way = math.sqrt(squared_distance(vertices, rows[i], around[i, j]))
+                way += math.sqrt(squared_distance(vertices, rows[i], around[i, k]))
+                out[pair, i] = way - whole <= share * whole
+                pair += 1
 
 
 @lean

@@ -167,3 +167,13 @@ def vertex_normals(vertices, faces, flip, offsets, corners, out):
             length = 1.0
             x = y = z = 0.0
         out[v, 0], out[v, 1], out[v, 2] = x / length, y / length, z / length
+
+
+@parallel_kernel
+def short_sides(edge_lengths, share, used, out):
+    """Write whether the half-edges of used faces are no longer than a share of the shorter one of the other sides."""
+    for f in prange(edge_lengths.shape[0]):
+        a, b, c = edge_lengths[f, 0], edge_lengths[f, 1], edge_lengths[f, 2]
+        out[f, 0] = used[f] and c <= share * min(a, b)
+        out[f, 1] = used[f] and a <= share * min(b, c)
+        out[f, 2] = used[f] and b <= share * min(c, a)
