@@ -117,13 +117,15 @@ def look_again(
         return
     least, heights = np.where(at_edge, LEAST + BESIDE_EDGE, LEAST), found.columns[:, HEIGHT].copy()
     is_missed = missed(sheet, heights, noise)
+    if not is_missed.any():
+        return
     is_detail = _detail(sheet, heights, noise, is_missed)
     found.steps[:] = is_missed & ~is_detail
     for _ in range(LOOKS):
         with np.errstate(invalid="ignore"):
             index = np.searchsorted(ladder.reaches, found.columns[:, 3] / (sheet.spacing * ladder.factors) * (1 + 1e-9))
         index = np.clip(index - 1, 0, len(ladder.reaches) - 1)
-        is_missed = is_detail & missed(sheet, heights, noise) & (index > least)
+        is_missed &= is_detail & (index > least)
         if not is_missed.any():
             return
         rows = np.flatnonzero(rings_around(sheet, is_missed, AROUND))
@@ -135,6 +137,7 @@ def look_again(
         found.put(rows, again)
         found.again[rows] = ~at_edge[rows]
         heights[rows] = again.columns[rows, HEIGHT]
+        is_missed = missed(sheet, heights, noise)
 
 
 def _least_around(sheet: balls.Sheet, values: NDArray[np.intp]) -> NDArray[np.intp]:

@@ -45,14 +45,15 @@ def is_voxel_surface(mesh: TriangleMesh, turnings: Floats) -> bool:
     multiples of (±1/a or 0, ±1/b or 0, ±1/c or 0), and steps up and down follow each other.  A surface of squares has
     the six along the axes, and no edge longer than a diagonal.
     """
-    used, known = mesh.topology.face_used, turnings[np.isfinite(turnings)]
-    if np.count_nonzero(used) < FEWEST or not len(known):
+    used, n_edges = mesh.topology.face_used, np.count_nonzero(np.isfinite(turnings))
+    n_bends = np.count_nonzero(np.abs(turnings) > ALIKE)
+    if np.count_nonzero(used) < FEWEST or not BENT[0] * n_edges < n_bends < BENT[1] * n_edges:
         return False
     corners = mesh.vertices[mesh.faces[used]]
     alike = max(ALIKE, 10.0 * file_rounding(mesh) / float(np.sqrt(np.mean(np.ptp(corners, axis=1) ** 2))))
-    bends = known[np.abs(known) > alike]
-    share, rarer = len(bends) / len(known), min(np.count_nonzero(bends > 0.0), np.count_nonzero(bends < 0.0))
-    if not BENT[0] < share < BENT[1] or rarer < TURNED_BACK[0] * len(bends):
+    bends = turnings[np.abs(turnings) > alike]
+    rarer = min(np.count_nonzero(bends > 0.0), np.count_nonzero(bends < 0.0))
+    if rarer < TURNED_BACK[0] * len(bends):
         return False
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
