@@ -58,7 +58,7 @@ def cover(sheet: balls.Sheet, candidates: Ints, radii: Floats) -> Ints:
     """
     n, lengths, centres = len(sheet.vertices), radii * sheet.spacing, [np.empty(0, np.int32)]
     marks, room, is_covered = np.zeros(n, np.int32), np.empty(n + 1, np.int32), np.zeros(n, np.bool_)
-    size = int(DENSE * radii.max(initial=0.0) ** 2) + 1
+    size = int(DENSE * min(float(radii.max(initial=0.0)), np.sqrt(n)) ** 2) + 1  # of any radius, larger than all
     width, most = size if size <= WIDEST else 1, n // (PORTIONS * size) + 1
     first, epoch, found = 0, 1, np.empty(n, np.int32)
     while first < len(candidates):
