@@ -108,10 +108,10 @@ def left_out_notes(left_out: NDArray[np.bool_] | None, n_removed: int) -> tuple[
     )
 
 
-def step_notes(has_steps: NDArray[np.bool_] | None) -> tuple[str, ...]:
-    """What was done about low steps, if there are more than a few."""
+def step_notes(has_steps: NDArray[np.bool_] | None, n_known: int) -> tuple[str, ...]:
+    """What was done about low steps, if there are more than a few among the vertices with a value."""
     n = 0 if has_steps is None else int(np.count_nonzero(has_steps))
-    if has_steps is None or n <= FEW_STEPS * len(has_steps):
+    if n <= FEW_STEPS * n_known:
         return ()
     what = "have steps of less than a spacing or so around them, as surfaces of voxels have"
     return (f"{n} vertices {what}: these were taken for noise. If they are shape, give a radius of a few spacings.",)

@@ -77,10 +77,11 @@ def _half_voxels(vertices: Floats, rings: Rows, spacing: Floats) -> Floats:
     """
     longest = np.empty(len(vertices))
     stencils.longest_links(vertices, *rings, longest)
-    small, large = np.nanquantile(spacing, (0.05, 0.95))
+    is_joined = longest > 0.0
+    small, large = np.nanquantile(spacing[is_joined], (0.05, 0.95))
     if large > GRADED * small:
         return np.zeros(len(spacing))
-    diagonal = 2.0 ** (np.round(STEPS * np.log2(np.quantile(longest, LONG))) / STEPS)
+    diagonal = 2.0 ** (np.round(STEPS * np.log2(np.quantile(longest[is_joined], LONG))) / STEPS)
     for _ in range(PASSES):
         sums = np.empty_like(spacing)
         stencils.ring_sums(np.nan_to_num(spacing), *rings, sums)
