@@ -53,7 +53,7 @@ def are_steps(vertices, faces):
 @pytest.mark.parametrize("quality", ["best", "fast"])
 @pytest.mark.parametrize("kind", ["squares", "raw", "blurred", "smoothed", "swollen"])
 def test_steps_of_masks_are_noise(kind, quality):
-    """K errs by 0.06 to 0.10 and H by 0.03 to 0.05 here; rings of neighbours by much more (benchmarks/bench_masks.py)."""
+    """K errs by 0.06 to 0.10 and H by 0.03 to 0.05 here, of rings by much more (benchmarks/bench_masks.py)."""
     mesh = surface(kind)
     curvature = rinow.surface_curvature(mesh, quality=quality)
     gaussian, mean = exact(mesh[0])
