@@ -16,7 +16,7 @@ Surfaces
     - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale` with `charts` and `lack_of_fit`, `searches`,
       `second_look`, `patch_tasks`, `ends`.
     - Both: `lifted`; `auto` with `unresolved`.
-    - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `facets`, `exact_facets`,
+    - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `cut`, `tangent_edges`, `facets`, `exact_facets`,
       `flat`, `hull_slivers`, `strays`; `voxels` and `terraces` of masks; `rounding` of positions.
 Points without a mesh
     `point_cloud`, over `cloud_facing` with `cloud_signs` and `cloud_stars`, `cloud_layers`, `cloud_sheet`,

@@ -14,16 +14,22 @@ from rinow.curvature.estimate import Estimate
 from rinow.curvature.facets import take_facets
 from rinow.curvature.hull_slivers import without_hull_slivers
 from rinow.curvature.rounding import file_rounding
+from rinow.curvature.stencils import rings_around
+from rinow.curvature.tangent_edges import tangent_edges
 from rinow.kernels import cuts
 from rinow.mesh import TriangleMesh
 
 __all__ = ["cut_along_creases", "one_sided"]
 
 Bools = NDArray[np.bool_]
+Indices = NDArray[np.intp]
 Progress = Callable[[int, int], object]
 
 NOISE = 2.0
 """A side bends if its sagitta over a ball exceeds so many standard deviations of the positions."""
+SURE, NEAR_RINGS, STRIP_RINGS = 0.5, 8, 3
+"""Standard error of a face by itself over that of the whole up to which it is taken, how far from a tangent edge, and
+how far from vertices inside the face."""
 
 
 def cut_along_creases(
@@ -66,7 +72,8 @@ def one_sided(
     """An estimate that takes no data from beyond a crease, and the vertices on creases.
 
     At a crease each side has its own curvature; that of the side that bends most is taken, of flat ones that with the
-    largest area around the vertex.
+    largest area around the vertex.  Where faces of a part join smoothly, values of each face by itself are taken if
+    they promise much less error, unless a radius is given.
 
     Parameters
     ----------
@@ -88,20 +95,60 @@ def one_sided(
     """
     is_crease = crease_barriers(mesh)
     smooth = without_hull_slivers(mesh, is_crease)
-    cut, origin = cut_along_creases(smooth, is_crease if smooth is mesh else None)
-    n, n_cut = mesh.n_vertices, cut.n_vertices
-    if cut is smooth:
-        return method(cut, progress=progress, **options), np.zeros(n, np.bool_)
+    if smooth is not mesh:
+        mesh, is_crease = smooth, crease_barriers(smooth)
+    is_tangent = np.zeros(len(is_crease), np.bool_)
+    if options.get("radius") is None:
+        is_tangent = tangent_edges(mesh, EdgeTurnings(mesh)) & ~is_crease
+    n, passes, done_before = mesh.n_vertices, 1 + int(is_tangent.any()), 0
 
     def report(done: int, total: int) -> None:
         if progress is not None:
-            progress(done * n // total, n)
+            progress((done_before + done * n // total) // passes, n)
 
+    cut, origin = cut_along_creases(mesh, is_crease)
     estimate = method(cut, progress=report, **options)
-    take_facets(cut, estimate, cut.topology.vertex_is_boundary | ~np.isfinite(estimate.spread))
     on_crease = np.bincount(origin, minlength=n) > 1
+    if cut is not mesh:
+        take_facets(cut, estimate, cut.topology.vertex_is_boundary | ~np.isfinite(estimate.spread))
+        estimate = _that_bends_most(cut, estimate, origin)
+    if is_tangent.any():
+        done_before = n
+        cut, origin = cut_along_creases(mesh, is_crease | is_tangent)
+        _take_faces(mesh, is_tangent, estimate, (cut, method(cut, progress=report, **options), origin), on_crease)
+    return estimate, on_crease
+
+
+def _take_faces(
+    mesh: TriangleMesh, is_tangent: Bools, estimate: Estimate, apart: tuple[TriangleMesh, Estimate, Indices],
+    on_crease: Bools,
+) -> None:  # fmt: skip
+    """Take the curvature of faces by themselves near tangent edges, in place, where it promises much less error.
+
+    Few points on one side may tell less than all around, for which the jump is noise.  What has no vertex inside is no
+    face but a strip: it is flat whatever the surface is.
+    """
+    cut, beside, origin = apart
+    joins = np.zeros(mesh.n_vertices, np.bool_)
+    joins[mesh.topology.edges[is_tangent]] = True
+    fitted = np.flatnonzero(joins[origin] & ~on_crease[origin] & np.isfinite(beside.spread))
+    fits = beside.at(fitted)
+    take_facets(cut, beside, on_crease[origin] | ~np.isfinite(beside.spread))
+    beside.fill(fitted, fits)
+    is_strip = ~rings_around(cut.topology, ~cut.topology.vertex_is_boundary, STRIP_RINGS)
+    beside.spread[is_strip | ~np.isfinite(beside.spread)] = np.inf
+    is_known = np.bincount(origin, ~np.isfinite(beside.gaussian), mesh.n_vertices) == 0
+    beside = _that_bends_most(cut, beside, origin)
+    limit = SURE * np.nan_to_num(estimate.spread, nan=np.inf)
+    rows = np.flatnonzero(rings_around(mesh.topology, joins, NEAR_RINGS) & is_known & (beside.spread < limit))
+    estimate.fill(rows, beside.at(rows))
+
+
+def _that_bends_most(cut: TriangleMesh, estimate: Estimate, origin: Indices) -> Estimate:
+    """The copy of each vertex that bends most, of flat ones that with the largest area around it."""
+    n, n_cut = int(origin.max()) + 1, cut.n_vertices
     order = np.lexsort((np.arange(n_cut), -cut.vertex_areas, -_bending(estimate, file_rounding(cut)), origin))
-    return estimate.at(order[np.searchsorted(origin[order], np.arange(n))]), on_crease
+    return estimate.at(order[np.searchsorted(origin[order], np.arange(n))])
 
 
 def _bending(estimate: Estimate, rounding: float) -> NDArray[np.float64]:
