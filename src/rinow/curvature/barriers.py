@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from rinow.curvature.creases import CreaseLines, EdgeTurnings, crease_lines_of
 from rinow.curvature.sheet import patch_sheet
-from rinow.curvature.stencils import rings_around
+from rinow.curvature.stencils import N_BLOCKS, rings_around
 from rinow.curvature.strays import spikes
-from rinow.kernels import crease_lines
+from rinow.kernels import crease_lines, rounds
 from rinow.mesh import TriangleMesh
 
 __all__ = ["crease_barriers"]
@@ -26,6 +26,9 @@ LEAST_ENDS = 3
 """Edges of a certain line at which large flat facets end, however short it is."""
 ROUND = np.radians(44.0)
 """Jump up to which lines that only bound single strips of faces may be those of a coarse round."""
+ROW, EXACT = np.radians(35.0), 1e3
+"""Jump in radians, and over its error, up to which a line may be a row of edges along a round: parts with chamfers have
+larger ones, and exact facets."""
 ALIKE = 3.0
 """Ratio of the widths of two strips up to which they may be of the same round: a chamfer is narrower than its plane."""
 
@@ -62,7 +65,7 @@ def _certain_lines(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLine
     labels = crease_lines.line_components(kept, edges, mesh.n_vertices)
     apart = kept & ~np.all(_around_spikes(mesh, kept)[edges], axis=1)
     sizes = np.bincount(labels[apart], minlength=mesh.n_vertices)
-    told = apart & ~_bounds_strips(mesh, turnings, lines)
+    told = apart & ~_bounds_strips(mesh, turnings, lines) & ~_are_rows(mesh, turnings, lines)
     certain = np.bincount(labels[kept & turnings.ends_facet], minlength=mesh.n_vertices) >= LEAST_ENDS
     for least, ratio in CERTAIN:
         clear = told & (np.abs(lines.angles) >= ratio * lines.errors)
@@ -81,6 +84,20 @@ def _around_spikes(mesh: TriangleMesh, kept: Bools) -> Bools:
     turning = np.bincount(t.edges[kept].ravel(), minlength=mesh.n_vertices)
     is_spike[alone] = 2 * turning[alone] > np.diff(t.neighbour_offsets)[alone]
     return rings_around(t, is_spike, 1)
+
+
+def _are_rows(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:
+    """(n_edges,): the mesh turns about as much at the next row of edges as at a flat crease, and bends so beyond both.
+
+    Of volumes with thick slices the surfaces have such rows where they run along the slices.
+    """
+    doubtful = np.abs(lines.angles) < np.minimum(ROW, EXACT * lines.errors)
+    rows = np.flatnonzero(lines.is_crease & doubtful)
+    votes, found = np.empty(len(rows)), np.zeros(len(lines.is_crease), np.bool_)
+    place = mesh.vertices, mesh.faces, turnings.normals, mesh.topology.partners, turnings.halfedges
+    rounds.bends_of_rounds(rows, *place, N_BLOCKS, votes)
+    found[rows] = votes > 0.5
+    return found
 
 
 def _bounds_strips(mesh: TriangleMesh, turnings: EdgeTurnings, lines: CreaseLines) -> Bools:

@@ -17,6 +17,8 @@ Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
+FLAT_FACE = 1e-5
+"""Height over a face, in units of its size, that is rounding."""
 SAME_AREA = 1e-3
 """Share by which the area of a facet may change: by rounding of positions in slivers, less than by a face too many."""
 
@@ -27,10 +29,19 @@ class Coarser(NamedTuple):
     mesh: TriangleMesh
     vertices: Indices
     """(k,): those without a face now."""
-    ends: Indices
-    """(k, 2): for a vertex on an edge the ends of that, for one in a face the nearest and the farthest corner."""
-    shares: Floats
-    """(k,): distance from the first end over the whole length; nan in a face."""
+    corners: Indices
+    """(k, 4): the ends of the edge or the corners of the face that each is on, some more than once."""
+    weights: Floats
+    """(k, 4): shares of these corners whose mean is the vertex; 0 for those that are there again."""
+
+
+class _Inner(NamedTuple):
+    """Vertices in faces, the corners of these with weights as in `Coarser`, and the nearest of them."""
+
+    vertices: Indices
+    corners: Indices
+    weights: Floats
+    nearest: Indices
 
 
 def coarser(mesh: TriangleMesh) -> Coarser | None:
@@ -64,8 +75,8 @@ def coarser(mesh: TriangleMesh) -> Coarser | None:
         own = rows[~(on_edge | inside)[rows[:, 1]]]
         new = np.arange(mesh.n_vertices)
         new[on_edge] = split.nearest[on_edge]
-        near = _corners_of_inner(mesh, rows, own, inside)
-        new[near[:, 0]] = near[:, 1]
+        near = _places_of_inner(mesh, rows, own, inside)
+        new[near.vertices] = near.nearest
         faces, bad = _merged_faces(mesh, new[mesh.faces], facet)
         if not len(bad):
             break
@@ -77,10 +88,11 @@ def coarser(mesh: TriangleMesh) -> Coarser | None:
     gone = np.flatnonzero(on_edge | inside)
     if not len(gone):
         return None
-    ends, shares = split.ends[gone], split.shares[gone]
-    at = np.searchsorted(gone, near[:, 0])
-    ends[at], shares[at] = near[:, 1:], np.nan
-    return Coarser(TriangleMesh(mesh.vertices, faces), gone, ends, shares)
+    corners, shares = split.ends[gone][:, [0, 1, 1, 1]], split.shares[gone]
+    weights = np.column_stack([1.0 - shares, shares, np.zeros((len(gone), 2))])
+    at = np.searchsorted(gone, near.vertices)
+    corners[at], weights[at] = near.corners, near.weights
+    return Coarser(TriangleMesh(mesh.vertices, faces), gone, corners, weights)
 
 
 def _facets(mesh: TriangleMesh, bends: Bools) -> Indices:
@@ -116,16 +128,22 @@ def _in_whole_facets(mesh: TriangleMesh, rows: Indices, split: SplitEdges, on_ed
     return out
 
 
-def _corners_of_inner(mesh: TriangleMesh, rows: Indices, own: Indices, inside: Bools) -> Indices:
-    """(k, 3): each vertex in a face, and the nearest and the farthest corner of that."""
+def _places_of_inner(mesh: TriangleMesh, rows: Indices, own: Indices, inside: Bools) -> _Inner:
+    """Each vertex in a face among its corners; of four corners the weights are as even as can be."""
     inner = rows[inside[rows[:, 1]]]
     if not len(inner):
-        return np.empty((0, 3), np.intp)
+        return _Inner(inner[:, 1], np.empty((0, 4), np.intp), np.empty((0, 4)), inner[:, 1])
     start, stop = np.searchsorted(own[:, 0], inner[:, 0]), np.searchsorted(own[:, 0], inner[:, 0], side="right")
-    choices = own[np.minimum(start[:, None] + np.arange(4), stop[:, None] - 1), 1]
-    distances = np.linalg.norm(mesh.vertices[choices] - mesh.vertices[inner[:, 1]][:, None], axis=2)
-    ends = [choices[np.arange(len(inner)), np.argmax(sign * distances, axis=1)] for sign in (-1.0, 1.0)]
-    return np.column_stack([inner[:, 1], *ends])
+    place = start[:, None] + np.arange(4)
+    corners, is_one = own[np.minimum(place, stop[:, None] - 1), 1], place < stop[:, None]
+    spokes = (mesh.vertices[corners] - mesh.vertices[inner[:, 1]][:, None]) * is_one[:, :, None]
+    distances = np.where(is_one, np.linalg.norm(spokes, axis=2), np.inf)
+    size = np.linalg.norm(spokes, axis=(1, 2))[:, None, None]
+    system = np.concatenate([np.swapaxes(spokes / size, 1, 2), is_one[:, None, :]], axis=1)
+    weights = np.linalg.pinv(system, FLAT_FACE)[:, :, 3]
+    return _Inner(
+        inner[:, 1], corners, np.where(is_one, weights, 0.0), corners[np.arange(len(inner)), distances.argmin(axis=1)]
+    )
 
 
 def _merged_faces(mesh: TriangleMesh, new: Indices, facet: Indices) -> tuple[Indices, Indices]:

@@ -121,7 +121,7 @@ def surface_curvature(
     mesh : TriangleMesh, IntrinsicMesh, (V, F) pair, or object with vertices and faces
         The surface.  Vertices may be unused or not finite, faces degenerate, misoriented or not manifold: `status`
         tells where no value is defined.  Soups are welded for the computation, seams and cracks closed, sheets that
-        meet computed apart; vertices amid an edge or a face, or far beside the surface, get the values of a neighbour.
+        meet computed apart; vertices amid an edge or a face, or far beside the surface, get those of their neighbours.
     method : {"auto", "sectional", "lifted", "intrinsic", "wald", "robinson", "angle_defect"}, optional
         "sectional" fits polynomials of order 2 to 8 to the deviations from an osculating torus or a mean plane;
         "lifted" takes the angles of the star after its edges were lifted to arcs; "intrinsic" averages angle defects;

@@ -24,10 +24,12 @@ GAIN = 1.1
 cubes 0.57 over 0.6, for 1 : 1 : 2.5 it is 1.14 over 1.2."""
 LONG = 0.98
 """Share of the vertices that have no edge longer than the diagonal of a face of the voxels."""
-FEW = 5e-4
-"""Share of a set of steps that may seem higher, where fits are beside the surface themselves."""
+FEW = 2e-3
+"""Share of a set of steps that may seem higher, where fits are beside the surface themselves or noise that neighbours
+share has a peak.  Of folds, scans and terrains three times as many or more are."""
 GRADED = 2.0
-"""Ratio of large to small spacings from which on a mesh is not one of voxels, which all are of one size."""
+"""Ratio of large to small spacings from which on a mesh is not one of voxels of one size, but of cells of an octree, as
+reconstructions of scattered points are, or of none: its longest edges then tell nothing about those elsewhere."""
 PASSES = 5
 """Averages of the spacing over rings: that of one vertex is chance."""
 STEPS = 8
@@ -79,12 +81,12 @@ def _half_voxels(vertices: Floats, rings: Rows, spacing: Floats) -> Floats:
     stencils.longest_links(vertices, *rings, longest)
     is_joined = longest > 0.0
     small, large = np.nanquantile(spacing[is_joined], (0.05, 0.95))
-    if large > GRADED * small:
-        return np.zeros(len(spacing))
     diagonal = 2.0 ** (np.round(STEPS * np.log2(np.quantile(longest[is_joined], LONG))) / STEPS)
     for _ in range(PASSES):
         sums = np.empty_like(spacing)
         stencils.ring_sums(np.nan_to_num(spacing), *rings, sums)
         spacing = sums / (np.diff(rings[0]) + 1)
+    if large > GRADED * small:
+        return LEAST * spacing
     ratio = np.divide(diagonal, spacing, out=np.zeros_like(spacing), where=spacing > 0.0)
     return spacing * np.clip(GAIN * (ratio - 1.0), LEAST, MOST)

@@ -1,10 +1,11 @@
-"""Vertex removal: vertices that tell nothing about a surface leave its mesh, and get the values of a neighbour.
+"""Vertex removal: vertices that tell nothing about a surface leave its mesh, and get the values of their neighbours.
 
 Those amid an edge lie on the chord, not on the surface (`caps`, `cracks`); others are `redundant` or `outliers`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import cos, hypot, isfinite, pi, sin
 from typing import NamedTuple
 
@@ -28,19 +29,24 @@ BEND = 0.75
 """Largest angle, in radians, between the faces on one side of the edge, and by which their angles at the vertex miss π:
 less than at a chamfer, where the vertex may be a corner."""
 
-MIDDLE = 1e-6
-"""Share of the edge by which a vertex may miss its middle: far above rounding."""
-BESIDE = 0.5 - 2.0 * MIDDLE
-"""Share of a vertex that is on no edge: the first end is the nearer one, what both differ by counts half."""
+BETWEEN = 0.5
+"""Share of the mean difference of the ends from their mean that counts as the error of the latter."""
 
 
 class Removed(NamedTuple):
-    """A vertex that was taken out, the ends of its edge, and its distance from the first over the whole length."""
+    """A vertex that was taken out, and those whose values it has in the mean, or without weights those of the first.
+
+    Without weights the last end is the farthest of all around: what it differs by from the first counts half.
+    """
 
     vertex: int
-    start: int
-    end: int
-    share: float
+    ends: tuple[int, ...]
+    weights: tuple[float, ...] = ()
+
+    @classmethod
+    def amid(cls, vertex: int, start: int, end: int, share: float) -> Removed:
+        """A vertex between the ends of an edge, at this share of its length from the first."""
+        return cls(vertex, (start, end), (1.0 - share, share))
 
 
 def without_strays(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Removed]]:
@@ -89,13 +95,13 @@ def without_edge_points(mesh: Mesh, amid: list[AmidEdge]) -> tuple[Mesh, list[Re
     for place in reversed(amid):
         t, a, b = place
         if a == b:
-            around = {v for number in edited.star(t) for v in edited.face(number)} - {t}
+            around = sorted({v for number in edited.star(t) for v in edited.face(number)} - {t})
             if _remove_from_triangle(edited, t):
-                removed.append(_beside(edited, t, around))
+                removed.append(_with_weights(t, zip(around, _shares(edited.positions, t, around), strict=True)))
         elif edited.on_edge(a, t) and edited.on_edge(t, b):
             at, tb = edited.length(a, t), edited.length(t, b)
             if _remove(edited, place):
-                removed.append(Removed(*place, at / (at + tb)))
+                removed.append(Removed.amid(*place, at / (at + tb)))
     return edited.result(), [*_on_whole_edges(removed[::-1]), *split]
 
 
@@ -104,41 +110,72 @@ def _without_splits(mesh: TriangleMesh) -> tuple[TriangleMesh, list[Removed]]:
     found = coarser(mesh)
     if found is None:
         return mesh, []
-    shares = np.where(np.isnan(found.shares), BESIDE, found.shares)
-    rows = zip(found.vertices.tolist(), *found.ends.T.tolist(), shares.tolist(), strict=True)
-    return found.mesh, [Removed(*row) for row in rows]
+    rows = zip(found.vertices.tolist(), found.corners.tolist(), found.weights.tolist(), strict=True)
+    return found.mesh, [_with_weights(t, zip(ends, weights, strict=True)) for t, ends, weights in rows]
+
+
+def _with_weights(vertex: int, parts: Iterable[tuple[int, float]]) -> Removed:
+    """A vertex whose values are a mean, each vertex once."""
+    total: dict[int, float] = {}
+    for v, weight in parts:
+        if weight != 0.0:
+            total[v] = total.get(v, 0.0) + weight
+    return Removed(vertex, tuple(total), tuple(total.values()))
 
 
 def _on_whole_edges(removed: list[Removed]) -> list[Removed]:
     """The vertices between others that were taken out, as between the ends of the edge that these are on."""
     found: dict[int, Removed] = {}
-    for t, a, b, share in removed:
-        whole = found.get(a) or found.get(b) or Removed(t, a, b, share)
-        places = {whole.start: 0.0, whole.end: 1.0} | {x: found[x].share for x in (a, b) if x in found}
-        place = (1.0 - share) * places[a] + share * places[b] if a in places and b in places else None
-        found[t] = Removed(t, a, b, share) if place is None else Removed(t, whole.start, whole.end, place)
+    for t, ends, weights in removed:
+        parts = list[tuple[int, float]]()
+        for v, weight in zip(ends, weights, strict=False):
+            whole = found.get(v, Removed(v, ()))
+            parts += [(u, weight * x) for u, x in zip(whole.ends, whole.weights, strict=False)] or [(v, weight)]
+        found[t] = _with_weights(t, parts) if weights else Removed(t, ends)
     return list(found.values())
 
 
 def give_values(estimate: Estimate, status: NDArray[np.uint8], removed: list[Removed]) -> None:
-    """Give the vertices that were taken out the values of the nearer end of their edge, and the worse status of both.
+    """Give the vertices that were taken out the values of the nearest of their ends, and the worst status of all.
 
-    Of ends that are equally near it is the one with the smaller spread.  The spread also holds what the ends differ by,
-    as far as the vertex is on the way.
+    Between ends that are all known the curvatures are the means of theirs.  The spread also holds what the ends differ
+    by: that of a surface whose curvature changes along an edge as much as it may.
     """
-    for t, a, b, share in removed:
-        is_first = share < 0.5 if abs(share - 0.5) > MIDDLE else estimate.spread[a] <= estimate.spread[b]
-        near, far, part = (a, b, share) if is_first else (b, a, 1.0 - share)
-        estimate.put(np.array([t]), np.array([near]))
-        step = part * (estimate.gaussian[far] - estimate.gaussian[near])
-        estimate.spread[t] = hypot(estimate.spread[near], step if isfinite(step) else 0.0)
-        status[t] = max(status[a], status[b])
+    for t, ends, weights in removed:
+        nearest = ends[int(np.argmax(weights))] if weights else ends[0]
+        estimate.put(np.array([t]), np.array([nearest]))
+        status[t] = max(status[v] for v in ends)
+        around = estimate.gaussian[list(ends)]
+        if weights and np.isfinite(around).all():
+            _put_mean(estimate, t, list(ends), np.array(weights))
+        else:
+            step = 0.5 * float(around[-1] - around[0])
+            estimate.spread[t] = hypot(estimate.spread[t], step if isfinite(step) else 0.0)
+
+
+def _put_mean(estimate: Estimate, vertex: int, ends: list[int], weights: Floats) -> None:
+    """The weighted mean of the curvatures of some ends, to which a vertex has the values of the nearest."""
+    values = estimate.gaussian[ends]
+    estimate.gaussian[vertex] = gaussian = float(weights @ values)
+    error = BETWEEN * float(np.abs(weights) @ np.abs(values - gaussian))
+    estimate.spread[vertex] = hypot(float(weights @ estimate.spread[ends]), error)
+    if estimate.mean is not None and estimate.k1 is not None and estimate.k2 is not None:
+        estimate.mean[vertex] = mean = float(weights @ estimate.mean[ends])
+        half = max(mean * mean - gaussian, 0.0) ** 0.5
+        estimate.k1[vertex], estimate.k2[vertex] = mean + half, mean - half
 
 
 def _beside(edited: EditedFaces, vertex: int, around: set[int]) -> Removed:
-    """A vertex beside the nearest of those around; what that and the one farthest from it differ by counts half."""
+    """A vertex beside the nearest of those around, and the one farthest from that."""
     near = min(sorted(around), key=lambda v: edited.length(vertex, v))
-    return Removed(vertex, near, max(sorted(around), key=lambda v: edited.length(near, v)), BESIDE)
+    return Removed(vertex, (near, max(sorted(around), key=lambda v: edited.length(near, v))))
+
+
+def _shares(positions: Floats, vertex: int, corners: list[int]) -> list[float]:
+    """The parts of the area of a triangle opposite to its corners, as seen from a vertex in it."""
+    spokes: Floats = positions[corners] - positions[vertex]
+    areas = np.linalg.norm(np.cross(spokes[[1, 2, 0]], spokes[[2, 0, 1]]), axis=1)
+    return (areas / areas.sum()).tolist()
 
 
 def _remove_from_triangle(edited: EditedFaces, vertex: int) -> bool:

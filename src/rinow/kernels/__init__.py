@@ -3,8 +3,8 @@
 Policy
     `_jit` compiles, `_notice` says so on a terminal, `_parallel` shares loops out among threads.
 Meshes
-    `adjacency`, `edge_numbers`, `triangles`, `fans`, `stencils`, `cuts`; `edge_noise`, `creases` and `crease_lines`,
-    `cone_points`, `facet_stars`; `records` of files.
+    `adjacency`, `edge_numbers`, `triangles`, `fans`, `stencils`, `cuts`; `edge_noise`, `creases`, `crease_lines`
+    and `rounds`; `cone_points`, `facet_stars`; `records` of files.
 Space forms and quadruples
     `spaceform` and `spaceform_model`, `determinants`, `point_sets`; `quadruples`, `embedding_curvatures`, `robinson`,
     `regularity`; `comparison` with `comparison_angles`.
