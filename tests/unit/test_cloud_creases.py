@@ -1,4 +1,4 @@
-"""Clouds of points on bodies with sharp edges: what an edge leaves beside it, and what the faces keep."""
+"""Clouds of points on bodies with sharp edges, what an edge leaves beside it and the faces keep; and on few points."""
 
 import numpy as np
 import pytest
@@ -33,3 +33,15 @@ def test_edges_do_not_bend_the_faces_beside_them(noise):
     # Three rings reach the edge from nearer points; 0.3 is 0.0004 in units of the inverse squared spacing.
     assert np.quantile(error[far], 0.9) < 0.3
     assert np.mean(error[away] <= 2.0 * found.spread[away]) > 0.9
+
+
+@pytest.mark.parametrize(("n", "seed"), [(60, 3), (80, 16), (100, 34), (120, 21)])
+def test_no_spread_is_not_a_spread_of_nothing(n, seed):
+    # Where no ball has a fit, nor a neighbour one, a quadric is taken whose error nothing tells: not 0.
+    rng = np.random.default_rng(seed)
+    u, v = rng.uniform(0.0, 2.0 * np.pi, (2, n))
+    w = 1.0 + 0.4 * np.cos(v)
+    found = rinow.point_cloud_curvature(np.stack([w * np.cos(u), w * np.sin(u), 0.4 * np.sin(v)], axis=1))
+    known = np.isfinite(found.gaussian)
+    assert known.any()
+    assert not (found.spread[known] == 0.0).any()
