@@ -54,8 +54,9 @@ def graph(
     check_tables(output, inputs=[edges])
     with working(f"reading {edges.name}"):
         labels, lengths, is_directed = read_graph(edges)
-    with working(f"curvature of {len(labels):,} nodes"), naming(str(edges)):
-        study = study_graph(lengths, labels, kind=kind, directed=directed or is_directed, unit=unit)
+    with working(f"curvature of {len(labels):,} nodes") as progress, naming(str(edges)):
+        lead_one_way = directed or is_directed
+        study = study_graph(lengths, labels, kind=kind, directed=lead_one_way, unit=unit, progress=progress)
     meaning = f"{kind} curvature, unit {study.curvature_unit}"
     for path, columns in zip(output, (study.nodes, study.edges), strict=False):
         with working(f"writing {path.name}"):

@@ -99,6 +99,7 @@ def _with_detail(cloud: Cloud, mesh: TriangleMesh, fit: Estimate) -> Estimate:
     stencils.ring_sums(has_detail, cloud.sheet.offsets, cloud.sheet.neighbours, around)
     unknown = at_hole & (around > 0.5 * np.diff(cloud.sheet.offsets))
     near = rings_around(cloud.sheet, at_hole, DETAIL_RINGS)
+    near &= step > 0.0  # an unknown spread is not 0
     detailed.spread[near] = np.fmax(detailed.spread, step)[near]
     detailed.gaussian[unknown] = np.nan
     return detailed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,6 +59,7 @@ def graph_curvature(
     radius: float | None = None,
     directed: bool | None = None,
     weighted: bool | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> GraphCurvature:
     r"""Curvature of a graph as a metric space: Wald's at nodes, Menger's or Haantjes's of edges and nodes.
 
@@ -77,6 +79,8 @@ def graph_curvature(
         symmetric distance, and lets every edge lead both ways.
     weighted : bool, optional
         Whether the lengths count.  By default they do unless all of them are 1; without lengths they are taken as 1.
+    progress : callable, optional
+        Called with the number of nodes done and their total.
 
     Returns
     -------
@@ -121,8 +125,8 @@ def graph_curvature(
     nodes (n - 2)/√3 and (n - 2) + √2 (n - 2)(n - 3), an inner edge of the square grid 0 and 2√2.
 
     The cost is O(Σ over edges uv of the edges at the neighbours of u) for the edges, without listing a path.  "wald"
-    searches twice the ball from twelve landmarks for each node: quick where balls are small parts of the graph, but the
-    whole graph for each node of one without such places, such as a random graph.
+    searches about the ball from twelve landmarks for each node, which meet halfway: for each 10,000 nodes with three
+    edges a node some 5 seconds on two cores, or 20 where hubs make each ball a large part of the graph.
 
     References
     ----------
@@ -154,12 +158,15 @@ def graph_curvature(
     edge_index = np.stack([arcs.tails[one_way], arcs.heads[one_way]], axis=1)
     undefined = np.full(arcs.n_nodes, np.nan)
     if kind == "wald":
-        nodes, spread, radii = wald_at_nodes(arcs, None if radius is None else float(in_unit(radius, -exponent)))
+        reach = None if radius is None else float(in_unit(radius, -exponent))
+        nodes, spread, radii = wald_at_nodes(arcs, reach, progress=progress)
         nodes, spread, radii = in_unit(nodes, -2 * exponent), in_unit(spread, -2 * exponent), in_unit(radii, exponent)
         return GraphCurvature(nodes, np.full(len(edge_index), np.nan), edge_index, spread, radii, kind)
     chosen = np.flatnonzero(one_way)
     edges = _menger(arcs, chosen, unweighted) if kind == "menger" else _haantjes(arcs, chosen)
     edges = in_unit(edges, -exponent)
+    if progress is not None:
+        progress(arcs.n_nodes, arcs.n_nodes)
     sums = np.asarray(np.bincount(edge_index.ravel(), np.repeat(edges, 2), arcs.n_nodes), np.float64)
     return GraphCurvature(sums, edges, edge_index, undefined, undefined.copy(), kind)
 

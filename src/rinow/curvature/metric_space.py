@@ -31,6 +31,8 @@ INNER = 0.75
 """Radius of the ball that one of given radius is compared with."""
 AVERAGED = 9
 """Nearest points whose squared biases are averaged, the point itself among them."""
+OWN, NOTABLE = 0.5, 6.0
+"""Least share of the own square in that mean, and the square over the variance that counts: others may hide it."""
 NEXT_ORDER = 3
 """Power of the radius with which the bias of the highest order grows at least."""
 FLOOR = 0.1
@@ -83,7 +85,7 @@ def metric_space_curvature(space: Any, *, radius: float | None = None) -> Metric
     Parameters
     ----------
     space : MetricSpace or (n_points, n_points) array_like of float
-        Distances, in any unit of length; inf between parts of a space.
+        Distances, in any unit of length; a `MetricSpace` of a graph may have inf between its parts.
     radius : float, optional
         Radius of the ball around each point, positive, in the unit of length; by default the one with the least
         expected error, at each point.
@@ -114,10 +116,10 @@ def metric_space_curvature(space: Any, *, radius: float | None = None) -> Metric
     this leaves by a curvature that varies, with its gradient, or with its second derivatives too.  The variance of each
     of the three estimates follows from the residual of the distances, there or around; the squared bias is the mean,
     over the nearest points, of the square of the difference from the highest order (of that order, from the ball
-    before), less the variance of this difference.  Balls hold 8, 12, 18, ... nearest points, of more than 30 an even
-    choice of 30.
-    The ball and the order with the least sum of variance and squared bias are taken.  On points of S_k the value is k
-    up to rounding.
+    before, and from what constants over both tend to), less the variance of this difference; half of the own square
+    counts if it is notable.  Balls hold 8, 12, 18, ... nearest points, of more than 30 an even choice of 30.  The ball
+    and the order with the least sum of variance and squared bias are taken.  On points of S_k the value is k up to
+    rounding.
 
     The status is UNRESOLVED, with nan, for fewer than five points, for points of a line, and where the standard error
     exceeds 1.5/radius² or the residual 5 % of the radius: the space is not like a surface at that scale (nodes of a
@@ -250,7 +252,25 @@ class _Ball:
             factor = 1.0 / np.maximum(1.0 - ratio, FLOOR) ** 2
             squares[rows, top] = factor * (self.values[rows, top] - reference.values[rows, before]) ** 2
             noise[rows, top] = factor * reference.variances[rows, before]
-        return np.maximum(_local_means(squares - noise, order), FLOOR * noise)
+        biases = np.maximum(_local_squares(squares, noise, order), FLOOR * noise)
+        if smaller is not None:
+            is_second = top == N_ORDERS - 1
+            biases[is_second, -1] = np.maximum(biases[:, -1], self._bend(smaller, order))[is_second]
+        return biases
+
+    def _bend(self, smaller: _Ball, order: Indices) -> Floats:
+        """(n,): squares of the bias of second derivatives, as far as constants over the two balls do not confirm them.
+
+        A constant differs from a smooth curvature by the square of the radius, so that those over two balls tell it as
+        well.  Of a polyhedron, only the vertices are curved: second derivatives there make a bump of each.
+        """
+        with np.errstate(all="ignore"):
+            share = (smaller.radii / self.radii) ** 2
+            limit = (smaller.values[:, 0] - share * self.values[:, 0]) / (1.0 - share)
+            variance = (smaller.variances[:, 0] + share**2 * self.variances[:, 0]) / (1.0 - share) ** 2
+            squares, noise = (self.values[:, -1] - limit) ** 2, variance + self.variances[:, -1]
+        noise[~np.isfinite(noise)] = np.nan  # no smaller ball
+        return np.nan_to_num(_local_squares(squares[:, None], noise[:, None], order)[:, 0])
 
     def improve(self, best: Floats, smaller: _Ball | None, order: Indices) -> NDArray[np.bool_]:
         """Enter the estimates with a smaller risk than the best so far; where there was one."""
@@ -265,6 +285,11 @@ class _Ball:
         found = np.stack([self.values[rows, chosen], risks[rows, chosen], self.radii, self.residuals])
         best[:, better] = found[:, better]
         return better
+
+
+def _local_squares(squares: Floats, noise: Floats, order: Indices) -> Floats:
+    """(n, k): mean of the squares less their variance at the nearest points, at least a share of a notable own one."""
+    return np.fmax(_local_means(squares - noise, order), OWN * (squares - NOTABLE * noise))
 
 
 def _local_means(values: Floats, order: Indices) -> Floats:

@@ -35,6 +35,8 @@ HALF = 0.5
 """Largest share of single rings: folds that a cubic flattens, these exaggerate as much."""
 PASSES = 10
 """Averages over rings of neighbours: some hundred vertices decide together, if their component as a whole agrees."""
+NEAR = 2
+"""The same for the part that a vertex has in what some hundred say: none beside a crease that they see."""
 LARGEST = 3.0
 """Residuals are cut at this multiple of their median modulus, lest a few bad stars decide."""
 STEPS = 8
@@ -70,7 +72,8 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     share = _common_share(mesh, height, OF_HEIGHTS, SMALL)
     if not share.any():
         return estimate
-    depth = np.sqrt(ring_means(mesh, np.nan_to_num(height) ** 2, PASSES))
+    square = np.nan_to_num(height) ** 2
+    depth = np.sqrt(np.minimum(ring_means(mesh, square, PASSES), ring_means(mesh, square, NEAR)))
     least = np.fmin(SMALL, DEEP * estimate.noise / spacing)
     share = np.minimum(share, _share_of(DEPTH, depth, least))
     share[~np.isfinite(estimate.gaussian) | mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
@@ -122,12 +125,18 @@ def _excess(mesh: TriangleMesh, gaussian: Floats) -> Floats:
 
     An error of a vertex bends the surface alike in all directions, so that its square is added to the product of
     the principal curvatures, whatever its sign.  The sum of the defects is right for any errors (Gauss and Bonnet).
+    Each vertex has its part by the excess near it: flat faces have none of that of the creases between them.
     """
     areas, whole = mesh.vertex_areas, 2.0 * np.pi
     known = np.isfinite(gaussian) & mesh.topology.vertex_is_manifold & ~mesh.topology.vertex_is_boundary
     excess = np.where(known, np.clip(gaussian * areas, -whole, whole) - mesh.vertex_angle_defects, 0.0)
-    area = ring_means(mesh, np.where(known, areas, 0.0), PASSES)
-    return np.divide(ring_means(mesh, excess, PASSES), area, out=np.zeros_like(area), where=area > 0.0)
+    area = np.where(known, areas, 0.0)
+    size = _quotient(ring_means(mesh, np.abs(excess), NEAR), ring_means(mesh, area, NEAR))
+    return size * _quotient(ring_means(mesh, excess, PASSES), ring_means(mesh, size * area, PASSES))
+
+
+def _quotient(a: Floats, b: Floats) -> Floats:
+    return np.divide(a, b, out=np.zeros_like(a), where=b > 0.0)
 
 
 def single_rings(mesh: TriangleMesh) -> Floats:

@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import minimize_scalar
 
-from rinow.kernels import point_sets
+from rinow.kernels import misfits, point_sets
 
-__all__ = ["Misfit", "least_misfit", "noise_at", "quietest_curvature", "quietest_near"]
+__all__ = ["Misfit", "least_misfit", "least_misfits", "noise_at", "quietest_curvature", "quietest_near"]
 
 Floats = NDArray[np.float64]
 
+N_BLOCKS = 16
+"""Pieces into which many sets are cut."""
 MAX_STEPS = 100
 SMALL_STEP = 1e-6
 """Steps below this are taken as they are, as long as each is less than half the last one: then they are rounding."""
@@ -121,8 +123,18 @@ def least_misfit(D: Floats, start: float = 0.0) -> Misfit | None:
         while not there.squares <= SLACK * here.squares and abs(step) > SMALL_STEP:
             step /= 4
             there = Misfit.at(D, min(max(here.k + step, SMALLEST), largest))
+        if there.k == here.k and last > SMALL_STEP * max(1.0, abs(here.k)):
+            return None  # at a bound, where it would stay
         here = there
     return None
+
+
+def least_misfits(distances: Floats) -> Floats:
+    """(m,): curvatures of the least misfits of m sets of distances, as of each alone; nan where none is found."""
+    out = np.empty(len(distances))
+    bounds = SMALLEST, SMALL_SLOPE, SMALL_STEP, SLACK, BEYOND
+    misfits.closest_curvatures(distances, bounds, MAX_STEPS, N_BLOCKS, out)
+    return out
 
 
 def quietest_curvature(D: Floats, least: float) -> float:

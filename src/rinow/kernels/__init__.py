@@ -6,8 +6,8 @@ Meshes
     `adjacency`, `edge_numbers`, `triangles`, `fans`, `stencils`, `cuts`; `edge_noise`, `creases`, `crease_lines`
     and `rounds`; `cone_points`, `facet_stars`; `records` of files.
 Space forms and quadruples
-    `spaceform` and `spaceform_model`, `determinants`, `point_sets`; `quadruples`, `embedding_curvatures`, `robinson`,
-    `regularity`; `comparison` with `comparison_angles`.
+    `spaceform` and `spaceform_model`, `determinants`, `point_sets`, `misfits`; `quadruples`, `embedding_curvatures`,
+    `robinson`, `regularity`; `comparison` with `comparison_angles`.
 Curves and graphs
     `polylines`, `curves`; `graphs`, `landmarks`; `metrics`, `midpoints`.
 Fits

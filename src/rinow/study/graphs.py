@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -80,7 +81,13 @@ class GraphStudy:
 
 
 def study_graph(
-    lengths: Any, labels: tuple[str, ...], *, kind: str, directed: bool | None = None, unit: str = "length"
+    lengths: Any,
+    labels: tuple[str, ...],
+    *,
+    kind: str,
+    directed: bool | None = None,
+    unit: str = "length",
+    progress: Callable[[int, int], object] | None = None,
 ) -> GraphStudy:
     """Compute the curvature of a graph and time it.
 
@@ -96,6 +103,8 @@ def study_graph(
         Whether edges lead one way.
     unit : str, optional
         Name of the unit of length.
+    progress : callable, optional
+        As for `rinow.graph_curvature`.
 
     Returns
     -------
@@ -103,5 +112,5 @@ def study_graph(
         The curvature and what is needed to read it.
     """
     start = time.perf_counter()
-    found = graph_curvature(lengths, kind=kind, directed=directed)
+    found = graph_curvature(lengths, kind=kind, directed=directed, progress=progress)
     return GraphStudy(found, labels, bool((lengths.data != 1.0).any()), unit, time.perf_counter() - start)
