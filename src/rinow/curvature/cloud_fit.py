@@ -20,7 +20,7 @@ from rinow.curvature.sectional import (
     standard_errors,
 )
 from rinow.curvature.stencils import rings_around
-from rinow.curvature.unresolved import with_detail
+from rinow.curvature.unresolved import EVERYWHERE, with_detail
 from rinow.kernels import stencils
 from rinow.mesh import TriangleMesh
 
@@ -90,7 +90,7 @@ def _with_detail(cloud: Cloud, mesh: TriangleMesh, fit: Estimate) -> Estimate:
 
     There the stars of the points disagree, so that the rings around tell less than the comparison of scales believes.
     """
-    detailed = with_detail(mesh, fit)
+    detailed = with_detail(mesh, fit, EVERYWHERE)
     t = mesh.topology
     at_hole = (t.vertex_is_boundary | ~t.vertex_is_used) & ~cloud.at_border
     step = np.abs(detailed.gaussian - fit.gaussian)

@@ -15,7 +15,7 @@ from rinow.curvature.terraces import beyond_terraces
 from rinow.kernels import quadrics, ring_jets
 from rinow.mesh import TriangleMesh
 
-__all__ = ["single_rings", "with_detail"]
+__all__ = ["EVERYWHERE", "single_rings", "with_detail"]
 
 Floats = NDArray[np.float64]
 
@@ -37,6 +37,8 @@ PASSES = 10
 """Averages over rings of neighbours: some hundred vertices decide together, if their component as a whole agrees."""
 NEAR = 2
 """The same for the part that a vertex has in what some hundred say: none beside a crease that they see."""
+EVERYWHERE = (PASSES, NEAR)
+"""Averages of which the least counts where folds are no deeper than they are all around and close by."""
 LARGEST = 3.0
 """Residuals are cut at this multiple of their median modulus, lest a few bad stars decide."""
 STEPS = 8
@@ -44,8 +46,11 @@ STEPS = 8
 then leaves it as it is, unless it lies at a border."""
 
 
-def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
+def with_detail(mesh: TriangleMesh, estimate: Estimate, passes: tuple[int, ...] = (PASSES,)) -> Estimate:
     """An estimate by fits, with the curvature of rings where fits over larger balls have smoothed detail away.
+
+    Folds are as deep as the least of the averages over so many rings says: on a mesh, which is cut at its creases, some
+    hundred vertices; of points `EVERYWHERE`, for the creases between their faces are in the mesh.
 
     Notes
     -----
@@ -73,7 +78,7 @@ def with_detail(mesh: TriangleMesh, estimate: Estimate) -> Estimate:
     if not share.any():
         return estimate
     square = np.nan_to_num(height) ** 2
-    depth = np.sqrt(np.minimum(ring_means(mesh, square, PASSES), ring_means(mesh, square, NEAR)))
+    depth = np.sqrt(np.minimum.reduce([ring_means(mesh, square, n) for n in passes]))
     least = np.fmin(SMALL, DEEP * estimate.noise / spacing)
     share = np.minimum(share, _share_of(DEPTH, depth, least))
     share[~np.isfinite(estimate.gaussian) | mesh.topology.vertex_is_boundary] = 0.0  # half a star shows too little
