@@ -136,7 +136,7 @@ def test_spikes_do_no_harm(quality):
     assert relative_error(curvature.gaussian, K) < 0.02
     assert curvature.notes == (
         "15 vertices were left out, single ones far beside the surface or in the middle of an edge: they have the "
-        "values of a neighbour.",
+        "values of their neighbours.",
     )
 
 

@@ -99,12 +99,12 @@ def left_out_notes(left_out: NDArray[np.bool_] | None, n_removed: int) -> tuple[
         return ()
     if n == 1:
         return (
-            "1 vertex was left out, far beside the surface or in the middle of an edge: it has the values of a "
-            "neighbour.",
+            "1 vertex was left out, far beside the surface or in the middle of an edge: it has the values of "
+            "its neighbours.",
         )
     return (
         f"{n} vertices were left out, single ones far beside the surface or in the middle of an edge: they have the "
-        "values of a neighbour.",
+        "values of their neighbours.",
     )
 
 
