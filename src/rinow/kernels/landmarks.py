@@ -3,7 +3,7 @@
 import numpy as np
 
 from rinow.kernels._jit import inner, lean, parallel_kernel, prange
-from rinow.kernels.graphs import sift_down, sift_up
+from rinow.kernels.graphs import settle_ball, sift_down, sift_up
 
 
 @lean
@@ -41,39 +41,6 @@ def missing(column, best, reaches):
     for j in range(column):
         most = max(most, best[j] - reaches[j])
     return most
-
-
-@lean
-def search_ball(v, limit, most, rows, apart, touched, members, keys, nodes):
-    """Dijkstra's algorithm from the first landmark up to a distance or a number of nodes.
-
-    Nodes are listed in the order of their discovery in `members`.  Returned are the distance of the last settled
-    node, up to which all distances are final, and the number of nodes reached.
-    """
-    offsets, heads, lengths = rows
-    reach, n_settled, n_heap, n_reached = 0.0, 0, 1, reach_node(v, 0, 0.0, apart, touched, 0)
-    keys[0], nodes[0], members[0] = 0.0, v, v
-    while n_heap > 0 and n_settled < most:
-        d, u = keys[0], nodes[0]
-        if d > limit:
-            break
-        n_heap -= 1
-        keys[0], nodes[0] = keys[n_heap], nodes[n_heap]
-        sift_down(n_heap, keys, nodes)
-        if d > apart[u, 0]:
-            continue
-        reach, n_settled = d, n_settled + 1
-        for i in range(offsets[u], offsets[u + 1]):
-            w, new = heads[i], d + lengths[i]
-            if new < apart[w, 0]:
-                if apart[w, 0] == np.inf:
-                    members[n_reached] = w
-                    n_reached = reach_node(w, 0, new, apart, touched, n_reached)
-                apart[w, 0] = new
-                keys[n_heap], nodes[n_heap] = new, w
-                sift_up(n_heap, keys, nodes)
-                n_heap += 1
-    return reach, n_reached
 
 
 @lean
@@ -123,7 +90,10 @@ def choose_landmarks(v, radius, least, is_even, rows, apart, touched, members, w
     """
     limit, most = (np.inf, least) if np.isnan(radius) else (radius, apart.shape[0])
     best, reaches = np.empty(matrix.shape[0]), np.empty(matrix.shape[0])
-    reach, n_touched = search_ball(v, limit, most, rows, apart, touched, members, *work)
+    reach, n_touched = settle_ball(v, limit, most, *rows, apart[:, 0], members, *work)
+    touched[:n_touched] = members[:n_touched]
+    for i in range(n_touched):
+        apart[members[i], -1] = 0.0
     n, count, landmark, reaches[0] = 0, 0, v, reach
     for i in range(n_touched):
         if apart[members[i], 0] <= reach:
