@@ -42,6 +42,19 @@ def bumps(length):
     return values
 
 
+def groove(width, depth):
+    """A ditch along the equator, of the shape of a bell; lengths in spacings."""
+    width, depth = SPACING * width, SPACING * depth
+
+    def values(x):
+        z = x[:, 2] / width
+        bell, axis = -depth * np.exp(-0.5 * z * z), np.array([0.0, 0.0, 1.0])
+        second = bell * (z * z - 1.0) / width**2
+        return bell, -np.outer(bell * z / width, axis), np.multiply.outer(second, np.diag(axis))
+
+    return values
+
+
 SPHERE = shapes.irregular_sphere(3000)
 SPACING = rinow.TriangleMesh(SPHERE.vertices, SPHERE.faces).mean_edge_length
 
@@ -117,6 +130,17 @@ def test_folds_of_a_few_spacings_are_detail(height, length, noise, monkeypatch):
     # Better than each of what it is made of, by a third on average.
     assert gaussian < 0.9 * min(relative_error(x, K) for x in (fit.gaussian, rings.gaussian, single[:, 0]))
     assert mean < 0.92 * min(relative_error(x, H) for x in (fit.mean, rings.mean, single[:, 1]))
+
+
+@pytest.mark.parametrize("depth", (1.0, 3.0))
+@pytest.mark.parametrize("width", (0.6, 1.0))
+def test_spreads_beside_a_groove_say_that_no_method_resolves_it(width, depth):
+    # Rings and edge lengths differ by many times what each expects to err by; K is small, but not nowhere.
+    V, K, _, _ = folded_sphere(groove(width, depth))
+    found = rinow.surface_curvature((V, SPHERE.faces))
+    error, near = np.abs(found.gaussian - K), np.abs(V[:, 2]) < 6.0 * SPACING
+    assert np.mean(error[near] < 2.0 * found.spread[near]) > 0.92
+    assert np.mean(error[near] > np.maximum(4.0 * found.spread[near], 0.02 / SPACING**2)) < 0.03
 
 
 @pytest.mark.parametrize(("height", "length", "noise"), [(waves, 4, 0.0), (bumps, 4, 0.0), (bumps, 7, 0.03)])

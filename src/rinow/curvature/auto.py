@@ -24,6 +24,8 @@ rings of neighbours by which it is told: some hundred vertices decide together."
 RESOLVED, FLAT = 3e-4, 1e-3
 """Expected error of K, in units of the larger squared curvature, but at least (FLAT/spacing)², below which edge lengths
 have nothing to add."""
+HALF = 0.5
+"""Largest share of edge lengths at folds that only rings resolve: neither knows there how much it errs."""
 LARGEST_BALL = 4
 """Steps of the largest ball of edge lengths that is examined: on quiet structured meshes small ones win."""
 
@@ -54,21 +56,24 @@ def auto(mesh: TriangleMesh, *, quality: str = "best", **options: Any) -> Estima
     lengths alone cannot show.  The weights are the inverse squared errors, as far as defects have no noise of chords
     that had to be taken out of them: without structure errors of neighbouring defects do not cancel.
 
-    Where fits call detail noise that rings of neighbouring vertices have in common, estimates from one to three rings
-    are taken (`rinow.curvature.unresolved`).
-
     Edge lengths are examined only where this last term leaves room for a gain at a fifth of the vertices around (with
     "fast", a third), where fits are not accurate to the fourth digit anyway, and where the positions have next to no
     noise; with noise the fits, which average over more data, win in any case.
+
+    Where fits call detail noise that rings of neighbouring vertices have in common, estimates from one to three rings
+    are taken (`rinow.curvature.unresolved`), and edge lengths count for at most as much as these.  The spread of an
+    average holds the difference of its parts, as if one of them were right and its share the probability of that.
     """
     estimate = sectional(mesh, quality=quality, **options)
     if options.get("radius") is not None:
         return estimate
-    return _with_edge_lengths(mesh, with_detail(mesh, estimate), quality)
+    detailed = with_detail(mesh, estimate)
+    most = np.where(detailed.gaussian == estimate.gaussian, 1.0, HALF)
+    return _with_edge_lengths(mesh, detailed, most, quality)
 
 
-def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> Estimate:
-    """The estimate with its Gaussian curvature averaged with that of edge lengths where these may gain."""
+def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, most: Floats, quality: str) -> Estimate:
+    """The estimate, its K averaged with that of edge lengths, by at most a share, where these may gain."""
     k1, k2, noise, spacing, risk = estimate.k1, estimate.k2, estimate.noise, estimate.spacing, estimate.risk
     if k1 is None or k2 is None or noise is None or spacing is None or risk is None:
         return estimate
@@ -85,11 +90,12 @@ def _with_edge_lengths(mesh: TriangleMesh, estimate: Estimate, quality: str) -> 
         found = intrinsic_curvature(mesh, most_steps=LARGEST_BALL)
     other = found.variance + found.squared_bias + chords
     hopeful &= np.isfinite(other) & np.isfinite(found.gaussian)
+    difference = np.where(hopeful, found.gaussian - estimate.gaussian, 0.0)
     share = np.divide(risk, risk + other, out=np.zeros_like(risk), where=hopeful & (risk > 0.0))
-    share *= 1.0 - np.nan_to_num(found.on_arcs)
-    step = np.where(share > 0.0, share * (found.gaussian - estimate.gaussian), 0.0)
+    share = np.minimum(share * (1.0 - np.nan_to_num(found.on_arcs)), most)
     spread = np.where(share > 0.5, QUALITIES[quality].calibration * np.sqrt(other), estimate.spread)
-    return estimate.with_gaussian(estimate.gaussian + step, spread)
+    spread = np.hypot(spread, np.sqrt(share * (1.0 - share)) * difference)
+    return estimate.with_gaussian(estimate.gaussian + share * difference, spread)
 
 
 def _chord_errors(mesh: TriangleMesh, estimate: Estimate) -> Floats:

@@ -202,12 +202,16 @@ def _times(share: Floats, step: Floats) -> Floats:
 
 
 def _blend(fit: Estimate, star: Estimate, share: Floats) -> Estimate:
-    """Both by their shares, and the directions, scale and spread of the larger one."""
+    """Both by their shares, which are taken for probabilities, and the directions and scale of the larger one."""
     mix = {name: getattr(fit, name) + _step(fit, star, name, share) for name in ("gaussian", "mean")}
     half = np.sqrt(np.maximum(mix["mean"] ** 2 - mix["gaussian"], 0.0))
     mix |= {"k1": mix["mean"] + half, "k2": mix["mean"] - half}
+    variance = share * star.spread**2 + (1.0 - share) * (fit.spread**2 + share * (star.gaussian - fit.gaussian) ** 2)
+    mix["spread"] = np.where(share > 0.0, np.sqrt(variance), fit.spread)
+    if fit.risk is not None:
+        mix["risk"] = np.where(share > 0.0, variance, fit.risk)
     mostly = share > 0.5
-    for name in ("spread", "radius", "direction1", "direction2"):
+    for name in ("radius", "direction1", "direction2"):
         ours, theirs = getattr(fit, name), getattr(star, name)
         mix[name] = np.where(mostly if ours.ndim == 1 else mostly[:, None], theirs, ours)
     return replace(fit, **mix)
