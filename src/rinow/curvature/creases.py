@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rinow._arrays import read_only
 from rinow.curvature.exact_facets import ends_of_facets
+from rinow.curvature.levels import Levels, levels_of
 from rinow.curvature.stencils import N_BLOCKS, ring_means
 from rinow.curvature.voxels import is_voxel_surface
 from rinow.kernels import crease_lines, creases, edge_noise, edge_numbers
@@ -87,9 +88,14 @@ class EdgeTurnings:
         return is_voxel_surface(self.mesh, self.turnings)
 
     @cached_property
+    def levels(self) -> Levels | None:
+        """Levels that heights were rounded to, whose treads are no facets."""
+        return levels_of(self.mesh)
+
+    @cached_property
     def ends_facet(self) -> Bools:
         """(n_edges,): a large flat facet ends there, a crease beyond doubt whose jump is the turning."""
-        if self.are_steps:
+        if self.are_steps or self.levels is not None:
             return np.zeros(len(self.turnings), np.bool_)
         return ends_of_facets(self.mesh, self.turnings, self.gains, self.halfedges)
 
@@ -101,6 +107,8 @@ class EdgeTurnings:
             self.turnings, self.gains, self.edge_of_halfedge, t.corner_offsets, t.vertex_corners, N_BLOCKS, noise
         )
         noise = ring_means(self.mesh, noise, NOISE_RINGS)
+        if self.levels is not None:
+            noise = np.maximum(noise, np.sqrt(self.levels.variances(self.mesh.vertex_normals)))
         noise[t.halfedge_ends(self.halfedges[self.ends_facet])] = 0.0
         at_edges = np.empty(len(self.halfedges))
         edge_numbers.means_of_ends(noise, self.mesh.faces, self.halfedges, at_edges)  # the mesh would keep `edges`

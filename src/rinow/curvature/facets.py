@@ -35,7 +35,8 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool
 
     Notes
     -----
-    Coordinates that are rounded to a share of the spacing, as 32 bits do far from the origin, tell no facets.
+    Coordinates that are rounded to a share of the spacing, as 32 bits do far from the origin, tell no facets, nor do
+    the treads of levels.
 
     Such a star is isometric to a part of the plane, K = 0.  A facet of a prism inscribed in a cylinder of radius R has
     the height h over the edge where it meets the next one; with the angle θ between both,
@@ -50,6 +51,8 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool
     t, turnings = mesh.topology, EdgeTurnings(mesh)
     gains = turnings.gains[np.isfinite(turnings.gains)]
     if len(gains) and coordinate_rounding(mesh) * float(np.median(gains)) > BY_CHANCE:
+        return
+    if turnings.levels is not None:
         return
     rounding = file_rounding(mesh) * turnings.gains
     across, lines = np.empty(len(rows)), np.empty(len(rows), np.intp)

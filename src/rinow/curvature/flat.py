@@ -7,24 +7,22 @@ from numpy.typing import NDArray
 
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
+from rinow.curvature.levels import flat_stars, levels_of
 from rinow.curvature.stencils import rings_around
 from rinow.mesh import TriangleMesh
 
 __all__ = ["flat_vertices", "flatten"]
 
-FLAT_DEFECT = 1e-10
-"""Angle defects below this, in radians, are rounding: a neighbourhood of such vertices is isometric to the plane."""
 FLAT_RINGS = 3
 
 
 def flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
-    """(n_vertices,): every interior vertex within three rings has the angle 2π, and that is no tread of voxels."""
-    t = mesh.topology
-    curved = (np.abs(mesh.vertex_angle_defects) > FLAT_DEFECT) & ~t.vertex_is_boundary
+    """(n_vertices,): every interior vertex within three rings has the angle 2π, and that is no tread of steps."""
+    curved = ~flat_stars(mesh)
     if curved.mean() > 0.99:
         return ~curved & False
-    flat = ~rings_around(t, curved, FLAT_RINGS)
-    return flat & (not (flat.any() and EdgeTurnings(mesh).are_steps))
+    flat = ~rings_around(mesh.topology, curved, FLAT_RINGS)
+    return flat & (not (flat.any() and (EdgeTurnings(mesh).are_steps or levels_of(mesh) is not None)))
 
 
 def flatten(estimate: Estimate, is_flat: NDArray[np.bool_]) -> None:

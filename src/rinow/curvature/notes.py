@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from rinow import tolerances
 from rinow._printing import counted
+from rinow.curvature.levels import levels_of
 from rinow.curvature.rounding import coordinate_rounding
 from rinow.mesh import IntrinsicMesh, TriangleMesh
 
@@ -137,8 +138,17 @@ def mesh_notes(mesh: TriangleMesh | IntrinsicMesh, *, oriented: bool) -> tuple[s
             where = "where sheets cover each other or more than two edges meet"
             notes.append(f"{n_seam} boundary vertices lie on others, {where}: they stay open.")
         if oriented:
-            notes += _orientation_notes(mesh)
+            notes += _orientation_notes(mesh) + _level_notes(mesh)
     return tuple(notes)
+
+
+def _level_notes(mesh: TriangleMesh) -> list[str]:
+    """Heights that were rounded to steps."""
+    levels = levels_of(mesh)
+    if levels is None:
+        return []
+    share = levels.step / mesh.mean_edge_length
+    return [f"Heights are whole multiples of a step of {share:.2f} edge lengths: it was taken for rounding, as noise."]
 
 
 def _rounding_notes(mesh: TriangleMesh) -> list[str]:

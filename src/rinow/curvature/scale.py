@@ -41,21 +41,27 @@ RUNG = np.log(LADDER[-1] / LADDER[0]) / (len(LADDER) - 1)
 
 
 class Ladder(NamedTuple):
-    """Radii of balls: reaches (R,) in units of `factors` (n,) spacings, and the most points of a ball."""
+    """Radii of balls: reaches (R,) in units of `factors` (n,) spacings, and the most points of a ball.
+
+    All noise has at least the variance `rounding` (n,), in spacings.
+    """
 
     reaches: Floats
     factors: Floats
     most: int
+    rounding: Floats
 
     @classmethod
-    def of_radius(cls, radius: float, sheet: balls.Sheet) -> Ladder:
-        """One ball of a given radius, in the unit of length."""
-        return cls(np.ones(1), radius / sheet.spacing, len(sheet.spacing))
+    def of_radius(cls, radius: float, sheet: balls.Sheet, rounding: Floats | float = 0.0) -> Ladder:
+        """One ball of a given radius, for positions rounded with that variance, both in the unit of length."""
+        least = np.maximum(rounding / sheet.spacing**2, ROUNDING**2)
+        return cls(np.ones(1), radius / sheet.spacing, len(sheet.spacing), least)
 
     @classmethod
-    def free(cls, sheet: balls.Sheet) -> Ladder:
+    def free(cls, sheet: balls.Sheet, rounding: Floats | float = 0.0) -> Ladder:
         """The balls to choose from."""
-        return cls(LADDER, np.ones(len(sheet.spacing)), 4096)
+        least = np.maximum(rounding / sheet.spacing**2, ROUNDING**2)
+        return cls(LADDER, np.ones(len(sheet.spacing)), 4096, least)
 
     def fitting(
         self, task: int, sheet: balls.Sheet, centres: Ints, frames: Floats, low: Ints, high: Ints, orders: Ints,
@@ -198,7 +204,7 @@ def _examine(
     risks.median_rows(tables.noise.reshape(medians.shape) * spacing[:, None] ** 2, links[1], links[0], medians)
     noise = np.fmin.reduce(medians, axis=1, initial=np.inf) / spacing**2
     noise[noise == np.inf] = 0.0
-    noise = np.maximum(noise, ROUNDING**2)
+    noise = np.maximum(noise, ladder.rounding[centres])
     ratios = np.fmin(medians.reshape(residuals.shape) / spacing[:, None, None] ** 2, residuals) / noise[:, None, None]
     missed = squared_biases_by_residuals(ratios, noise, ladder.reaches, curvedness * spacing, errors_of == MEAN)
     s2 = np.repeat(noise, n_radii)[:, None]

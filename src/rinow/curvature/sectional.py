@@ -15,6 +15,7 @@ from rinow.curvature.charts import DOUBTFUL, Choice, either, leads
 from rinow.curvature.ends import repair_ends
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flat import flat_vertices, flatten
+from rinow.curvature.levels import levels_of
 from rinow.curvature.patch_tasks import Tasks, add_patches
 from rinow.curvature.scale import Ladder, Samples, chosen_at, curvedness_of, sample, scales, windows
 from rinow.curvature.searches import Centres, Found, blended, search_both
@@ -135,7 +136,9 @@ def sectional(
     tasks = Tasks(executor or SerialExecutor())
     if progress is not None:
         tasks.report = lambda share: progress(int(min(share, 0.99) * n), n)
-    ladder = Ladder.free(sheet) if radius is None else Ladder.of_radius(radius, sheet)
+    levels = levels_of(mesh)
+    rounding = 0.0 if levels is None else levels.variances(sheet.normals)
+    ladder = Ladder.free(sheet, rounding) if radius is None else Ladder.of_radius(radius, sheet, rounding)
     at_edge = rings_around(mesh.topology, mesh.topology.vertex_is_boundary, EDGE_RINGS)[index]
     samples = sample(sheet, ladder, QUALITIES[quality].selects, tasks, _sizes_of_components(mesh)[index])
     values, noise = blended_patches(sheet, ladder, QUALITIES[quality], samples, at_edge, tasks)
