@@ -65,12 +65,20 @@ class LengthNoise:
 
     def variance(self, coefficients: Floats) -> Floats:
         """(n_vertices,): variance of the sum of coefficient times wave."""
-        squares = passed(coefficients, np.exp(-0.5 * TIMES)) ** 2 * TIMES**3
+        return GAUSSIAN * self.density * self._integrals(coefficients, 3)
+
+    def variance_by_jumps(self, coefficients: Floats, squares: Floats) -> Floats:
+        """(n_vertices,): the same by jumps of the weights, of which these are the squares per area: see `Margins`."""
+        return squares * self._integrals(coefficients, 1) / (2.0 * np.pi)
+
+    def _integrals(self, coefficients: Floats, power: int) -> Floats:
+        r"""(n_vertices,): :math:`\int q^2 e^{-s_0^2 k^2} k^{2p-1} dk`."""
+        squares = passed(coefficients, np.exp(-0.5 * TIMES)) ** 2 * TIMES**power
         integrals = 0.5 * np.exp(-np.multiply.outer(STARTS, TIMES)) @ squares * np.log(TIMES[1] / TIMES[0])
         with np.errstate(all="ignore"):
             at_start = np.log(self.start / self.step)
             smoothing.interpolate(at_start, np.log(STARTS), np.log(integrals))
-            return GAUSSIAN * self.density * np.exp(at_start) / self.step**3
+            return np.exp(at_start) / self.step**power
 
     def level(self, flow: CurvatureFlow, waves: Waves) -> Floats:
         """(n_vertices,): variance of the edge lengths that the residuals of smooth fits show around each vertex."""
