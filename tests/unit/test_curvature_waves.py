@@ -5,7 +5,6 @@ import pytest
 
 import shapes
 from rinow import TriangleMesh
-from rinow.curvature import intrinsic
 from rinow.curvature import waves as waves_module
 from rinow.curvature.averages import squared_bias
 from rinow.curvature.disagreement import proven_bias

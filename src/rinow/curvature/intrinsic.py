@@ -224,8 +224,9 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
 
     The candidates :math:`K_{m,r}` are averages of the defects over areas with weights that end at a distance, of
     order 2r in it, for r = 1, 2, 3, and with as much noise as the mean :math:`(I - (I - S^m)^r) K` by heat flow for
-    m = 0, 1, 2, 3, 4, 6, ... 128: see `rinow.curvature.waves`.  At each vertex the one with the least sum of variance
-    and squared bias is taken.  The variance is that of `LengthNoise`, its level from the residuals of small fits.  The
+    m = 0, 1, 2, 3, 4, 6, ... 128: see `rinow.curvature.waves`, and `rinow.curvature.margins` for boundaries.  At each
+    vertex the one with the least sum of variance and squared bias is taken.  The variance is that of `LengthNoise`,
+    its level from the residuals of small fits.  The
     squared bias of :math:`K_{m,r}` is the mean over a neighbourhood of :math:`(K_{m/2,r+1} - K_{m,r})^2`,
     less the variance of this difference.  At the end the values are multiplied by
     :math:`(1 - \langle error^2 \rangle / \langle K^2 \rangle) / 0.95`, cut to between 0 and 1 (after James and

@@ -23,9 +23,9 @@ NOISE_PROBES = ((2, 2), (4, 2), (8, 2), (8, 3))
 TIMES, STARTS = np.geomspace(1e-5, 1e4, 500), np.geomspace(1e-2, 1e2, 25)
 """Squared frequencies times σ² that the noise is integrated over, and s0² over σ² that this is done for."""
 UNEVEN = 1.1e-3
-"""What weights that vary from vertex to vertex add: the columns of S sum to the areas up to a few percent, and errors of
-lengths cancel up to that share of them, so that their variance falls like 1/m instead of 1/m³ in the end.  Measured on
-irregular meshes, where it doubles the variance at the scale 43."""
+"""What weights that vary from vertex to vertex add: the columns of S sum to the areas up to a few percent, and errors
+of lengths cancel up to that share of them, so that their variance falls like 1/m instead of 1/m³ in the end.  Measured
+on irregular meshes, where it doubles the variance at the scale 43."""
 LEVEL_PASSES = 6
 """Repetitions of the mean over a ring that average squared residuals."""
 
@@ -41,6 +41,7 @@ class LengthNoise:
     :math:`s_0^2` is added to :math:`s^2` that makes it right for m = 0 as well, where the sum of squared derivatives of
     the defect is known.  A window that passes the share q of the frequency k has, likewise,
     :math:`\rho \, 3 / (16\pi) \int q^2 e^{-s_0^2 k^2} k^5 dk`.
+    To :math:`k^5` the share of k is added that uneven weights have.
 
     Attributes
     ----------
