@@ -5,8 +5,8 @@ import pytest
 
 import shapes
 from rinow import TriangleMesh
-from rinow.curvature import intrinsic
 from rinow.curvature import waves as waves_module
+from rinow.curvature.averages import squared_bias
 from rinow.curvature.disagreement import proven_bias
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.intrinsic import CALIBRATION, intrinsic_curvature
@@ -94,7 +94,7 @@ def test_no_squared_bias_is_so_small_that_two_spreads_do_not_hold_the_difference
     flow = CurvatureFlow(TriangleMesh(NOISY_TORUS.vertices, NOISY_TORUS.faces))
     spike = np.zeros(len(NOISY_TORUS.vertices))
     spike[5] = 1e9
-    squared = intrinsic._squared_bias(1, spike, flow, np.ones(len(spike)))
+    squared = squared_bias(1, spike, flow, np.ones(len(spike)))
     assert 2 * CALIBRATION * np.sqrt(squared[5]) >= 1e9 * (1 - 1e-12)
 
 

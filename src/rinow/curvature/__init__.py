@@ -12,7 +12,7 @@ Surfaces
     vertices and `outliers`, by `ear_clipping`), in `units` that are safe; each method makes an `estimate`.
 
     - Edge lengths alone: `angle_defect`, `wald`, `geodesic_stars`; `intrinsic` with `flow`, `waves`, `arcs`,
-      `length_noise`, `disagreement`, `unseen`.
+      `averages`, `length_noise`, `margins`, `disagreement`, `unseen`.
     - Fits: `sectional` with `sheet` and `stencils`, `centres`, `scale` with `charts` and `lack_of_fit`, `searches`,
       `second_look`, `patch_tasks`, `ends`.
     - Both: `lifted`; `auto` with `unresolved`.

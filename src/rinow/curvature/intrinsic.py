@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -11,12 +10,14 @@ from numpy.typing import NDArray
 
 from rinow.curvature.angle_defect import longest_edges
 from rinow.curvature.arcs import without_chords
+from rinow.curvature.averages import SUPPORT, Averages, Candidate
 from rinow.curvature.disagreement import proven_bias
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.flow import CurvatureFlow
 from rinow.curvature.length_noise import LengthNoise
+from rinow.curvature.margins import Margins
 from rinow.curvature.unseen import unseen_error
-from rinow.curvature.waves import LADDER, ORDER, REFERENCE, Waves, window
+from rinow.curvature.waves import LADDER, Waves
 from rinow.kernels import patch_order
 from rinow.kernels.risks import CLEAR
 from rinow.mesh import IntrinsicMesh, TriangleMesh
@@ -25,30 +26,19 @@ __all__ = ["IntrinsicCurvature", "intrinsic", "intrinsic_curvature"]
 
 Floats = NDArray[np.float64]
 
-PASSES, SHRINK_PASSES = (5, 16), 12
-"""Repetitions of the mean over a ring that average squared errors: least and most, a third of the scale between."""
-VARIANCE_PASSES = 3
-"""The same for the mean that a variance is raised to."""
+SHRINK_PASSES = 12
+"""Repetitions of the mean over a ring that average squared errors."""
 CALIBRATION = 1.5
 """Spread over the root of the least predicted squared error: the candidate chosen is the one that looks best."""
-SUPPORT = 10.0
-"""Squared radius of the ball over the variance of the weights (1 - (d/radius)²)³ in it along one axis."""
 FLAT_RINGS, FLAT_DEFECT = 3, 1e-10
 """A vertex with defects below this within so many rings is flat."""
 IDLE = 2
 """Scales in a row without a smaller error at any vertex after which larger ones are left out."""
-FLOOR = 0.1
-"""Share of the variance of a comparison that its square cannot be told from: least squared bias."""
-WITHIN = 3.0
-"""Differences of a value from its reference over the root of its squared bias, at most, so that two spreads hold them.
-S is not symmetric, and waves may grow somewhere: they do so in these differences as well."""
 PROVED = 8
 """Least scale that is held against the best of the smaller ones: below, none holds enough to miss a bump."""
 LARGE, FAR, PATCH = 20_000, 20, 200
 """Vertices from which their order matters, the share of all of them that numbers of neighbours then may be apart, and
 vertices of a patch."""
-Candidate = tuple[Floats, Floats, Floats, Floats]
-"""Values, variances, squared biases, radii."""
 UNSEEN = 1.0 / 12.0 + 1.0 / 8.0
 """Relative error of K by chords and flat triangles of the side c on an umbilic, in units of K c²; see `intrinsic`."""
 
@@ -139,6 +129,7 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
     start, shares = without_chords(flow, noise)
     waves = Waves(flow, start)
     tau2 = noise.level(flow, waves)
+    averages = Averages(flow, noise, waves, tau2, Margins(flow, noise, start, most_steps))
     n = mesh.n_vertices
     bias, unseen, radii = np.zeros((3, n))
     best = IntrinsicCurvature(np.full(n, np.nan), np.full(n, np.inf), bias, unseen, radii, shares)
@@ -147,14 +138,14 @@ def _in_given_order(mesh: TriangleMesh | IntrinsicMesh, radius: float | None, mo
     for m in LADDER[: bisect_right(LADDER, most_steps)]:
         here = None if wanted is None else wanted == m
         if here is None or here.any():
-            candidates = _candidates(m, flow, noise, waves, tau2)
+            candidates = averages.of_scale(m)
             if m >= PROVED:
                 candidates = (_beside(best, candidate, flow) for candidate in candidates)
             improved = [_improve(best, candidate, here) for candidate in candidates]
             idle = 0 if any(improved) else idle + 1
         if idle == IDLE and here is None:
             break
-    del waves  # with those it keeps: what follows takes the most memory
+    del waves, averages  # with those it keeps: what follows takes the most memory
     best.gaussian[_is_flat(flow) & np.isfinite(best.gaussian)] = 0.0
     _shrink(best, flow)
     scale = best.radius**2 / SUPPORT
@@ -185,50 +176,6 @@ def _shrink(best: IntrinsicCurvature, flow: CurvatureFlow) -> None:
     error = flow.means(np.where(np.isfinite(risk), np.minimum(risk, total), np.nan), SHRINK_PASSES)
     with np.errstate(all="ignore"):
         best.gaussian[:] *= np.where(total > 0.0, np.clip((1.0 - error / total) / (1.0 - CLEAR), 0.0, 1.0), 1.0)
-
-
-def _candidates(m: int, flow: CurvatureFlow, noise: LengthNoise, waves: Waves, tau2: Floats) -> Iterator[Candidate]:
-    """The estimates of one scale, for all orders."""
-    radius = np.sqrt(np.fmax(SUPPORT * m * noise.step, flow.spacing**2))
-    orders = range(1, ORDER + 1 if m else 2)
-    windows = [window(m, order) for order in orders]
-    differences = [_difference(_reference(m, order), c) for order, c in zip(orders, windows, strict=True)] if m else []
-    sums = waves.sums(windows + differences)
-    for i, c in enumerate(windows):
-        values = sums[i] if m else np.where(flow.has_data, sums[i], np.nan)
-        variance = _product(tau2, noise.variance(c))
-        variance = np.fmax(variance, flow.means(variance, VARIANCE_PASSES))
-        variance[~np.isfinite(values)] = np.nan
-        bias = np.zeros(len(radius))
-        if m:
-            bias = _squared_bias(m, sums[len(windows) + i], flow, _product(tau2, noise.variance(differences[i])))
-        yield values, variance, bias, radius
-
-
-def _squared_bias(m: int, difference: Floats, flow: CurvatureFlow, seen: Floats) -> Floats:
-    """What a candidate differs by from its reference, squared, less the noise of that."""
-    excess = difference**2 - seen
-    seen = np.fmax(seen, flow.means(seen, VARIANCE_PASSES))
-    least = np.fmax(FLOOR * seen, (difference / WITHIN) ** 2)
-    return np.fmax(flow.means(excess, int(np.clip(m // 3, *PASSES))), least)
-
-
-def _product(noise: Floats, variance: Floats) -> Floats:
-    """Variance for noise of the lengths; nan, so that no candidate wins, where it is 0 times infinity."""
-    with np.errstate(invalid="ignore"):
-        return noise * variance
-
-
-def _reference(m: int, order: int) -> Floats:
-    """What the candidate of this scale and order is compared with: half the scale, an order more if there is one."""
-    half = REFERENCE[m]
-    return window(half, order + 1 if half == m else min(order + 1, ORDER))
-
-
-def _difference(a: Floats, b: Floats) -> Floats:
-    """Coefficients of a minus those of b."""
-    n = max(len(a), len(b))
-    return np.pad(a, (0, n - len(a))) - np.pad(b, (0, n - len(b)))
 
 
 def _beside(best: IntrinsicCurvature, candidate: Candidate, flow: CurvatureFlow) -> Candidate:
@@ -277,8 +224,9 @@ def intrinsic(mesh: TriangleMesh | IntrinsicMesh, *, radius: float | None = None
 
     The candidates :math:`K_{m,r}` are averages of the defects over areas with weights that end at a distance, of
     order 2r in it, for r = 1, 2, 3, and with as much noise as the mean :math:`(I - (I - S^m)^r) K` by heat flow for
-    m = 0, 1, 2, 3, 4, 6, ... 128: see `rinow.curvature.waves`.  At each vertex the one with the least sum of variance
-    and squared bias is taken.  The variance is that of `LengthNoise`, its level from the residuals of small fits.  The
+    m = 0, 1, 2, 3, 4, 6, ... 128: see `rinow.curvature.waves`, and `rinow.curvature.margins` for boundaries.  At each
+    vertex the one with the least sum of variance and squared bias is taken.  The variance is that of `LengthNoise`,
+    its level from the residuals of small fits.  The
     squared bias of :math:`K_{m,r}` is the mean over a neighbourhood of :math:`(K_{m/2,r+1} - K_{m,r})^2`,
     less the variance of this difference.  At the end the values are multiplied by
     :math:`(1 - \langle error^2 \rangle / \langle K^2 \rangle) / 0.95`, cut to between 0 and 1 (after James and
