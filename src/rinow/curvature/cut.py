@@ -25,6 +25,8 @@ Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 Progress = Callable[[int, int], object]
 
+CLEAR = 0.25
+"""The same over what both differ by: so much is no noise, but the jump of which the whole knows nothing."""
 NOISE = 2.0
 """A side bends if its sagitta over a ball exceeds so many standard deviations of the positions."""
 SURE, NEAR_RINGS, STRIP_RINGS = 0.5, 8, 3
@@ -125,8 +127,9 @@ def _take_faces(
 ) -> None:  # fmt: skip
     """Take the curvature of faces by themselves near tangent edges, in place, where it promises much less error.
 
-    Few points on one side may tell less than all around, for which the jump is noise.  What has no vertex inside is no
-    face but a strip: it is flat whatever the surface is.
+    Few points on one side may tell less than all around, for which the jump is noise.  But what both differ by, beyond
+    the error of the face by itself, is an error of the whole, however small its spread: it bends over the edge.  What
+    has no vertex inside is no face but a strip: it is flat whatever the surface is.
     """
     cut, beside, origin = apart
     joins = np.zeros(mesh.n_vertices, np.bool_)
@@ -139,8 +142,13 @@ def _take_faces(
     beside.spread[is_strip | ~np.isfinite(beside.spread)] = np.inf
     is_known = np.bincount(origin, ~np.isfinite(beside.gaussian), mesh.n_vertices) == 0
     beside = _that_bends_most(cut, beside, origin)
-    limit = SURE * np.nan_to_num(estimate.spread, nan=np.inf)
-    rows = np.flatnonzero(rings_around(mesh.topology, joins, NEAR_RINGS) & is_known & (beside.spread < limit))
+    step = np.nan_to_num(np.abs(beside.gaussian - estimate.gaussian))
+    limit = np.fmax(SURE * np.nan_to_num(estimate.spread, nan=np.inf), CLEAR * step)
+    is_near = rings_around(mesh.topology, joins, NEAR_RINGS) & is_known
+    is_taken = is_near & (beside.spread < limit)
+    doubted = np.flatnonzero(is_near & ~is_taken & np.isfinite(beside.spread))
+    estimate.spread[doubted] = np.fmax(estimate.spread[doubted], step[doubted] - beside.spread[doubted])
+    rows = np.flatnonzero(is_taken)
     estimate.fill(rows, beside.at(rows))
 
 
