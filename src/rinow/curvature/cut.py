@@ -13,7 +13,9 @@ from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.facets import take_facets
 from rinow.curvature.hull_slivers import without_hull_slivers
+from rinow.curvature.rims import rims_of, take_strips
 from rinow.curvature.rounding import file_rounding
+from rinow.curvature.star_bounds import heed_stars
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.tangent_edges import tangent_edges
 from rinow.kernels import cuts
@@ -112,13 +114,23 @@ def one_sided(
     estimate = method(cut, progress=report, **options)
     on_crease = np.bincount(origin, minlength=n) > 1
     if cut is not mesh:
+        _heed(cut, estimate, options)
         take_facets(cut, estimate, cut.topology.vertex_is_boundary | ~np.isfinite(estimate.spread))
+        take_strips(cut, estimate, rims_of(cut))
         estimate = _that_bends_most(cut, estimate, origin)
     if is_tangent.any():
         done_before = n
         cut, origin = cut_along_creases(mesh, is_crease | is_tangent)
-        _take_faces(mesh, is_tangent, estimate, (cut, method(cut, progress=report, **options), origin), on_crease)
+        beside = method(cut, progress=report, **options)
+        _heed(cut, beside, options)
+        _take_faces(mesh, is_tangent, estimate, (cut, beside, origin), on_crease)
     return estimate, on_crease
+
+
+def _heed(cut: TriangleMesh, estimate: Estimate, options: dict[str, Any]) -> None:
+    """Correct, in place, what the mesh itself contradicts, unless a radius is given."""
+    if options.get("radius") is None:
+        heed_stars(cut, estimate, rims_of(cut))
 
 
 def _take_faces(
