@@ -22,6 +22,8 @@ LEAST_TURN, STRAIGHT = 1e-6, 1e-6
 """Turning of the faces beside a vertex, and of its rim, that tell no direction in which the surface bends."""
 STEEP = 0.3
 """Least sine of the angle between a rim and the lines that do not bend."""
+STEADY = 0.5
+"""Largest step from the mean of both neighbours on the rim, over the curvature itself."""
 ALIKE = 2.0
 """Ratio up to which the curvature by the rim and that by the turning of the faces are of one surface."""
 
@@ -63,7 +65,9 @@ def rims_of(mesh: TriangleMesh) -> Rims:
 
     .. math:: k = - \frac{c \cdot N}{\sin^2 β}
 
-    is the curvature across the line (Meusnier, Euler), exact on cylinders and cones with circular rims.
+    is the curvature across the line (Meusnier, Euler), exact on cylinders and cones with circular rims.  It is told
+    where it agrees with the turning of the faces, and with those before and after it on the rim: under noise it does
+    not.
     """
     h, t = mesh.topology.boundary_halfedges, mesh.topology
     ends, none = t.halfedge_ends(h), np.full(mesh.n_vertices, -1, np.intp)
@@ -90,7 +94,18 @@ def rims_of(mesh: TriangleMesh) -> Rims:
         ratio = np.abs(across) / by_faces
         is_told = (turns > LEAST_TURN) & (slant > STEEP) & (ratio < ALIKE) & (ratio > 1.0 / ALIKE)
     across[~is_told] = np.nan
+    across[~_are_steady(across, rows, ends[before, 0], ends[after, 1])] = np.nan
     return Rims(rows, across, lines, normals, turns, np.fmin(heights[before], heights[after]))
+
+
+def _are_steady(across: Floats, rows: Indices, before: Indices, after: Indices) -> NDArray[np.bool_]:
+    """Curvatures that are about the mean of those before and after them on the rim: noise makes few such."""
+    everywhere = np.full(1 + max(rows.max(initial=0), before.max(initial=0), after.max(initial=0)), np.nan)
+    everywhere[rows] = across
+    sides = np.stack([everywhere[before], everywhere[after]])
+    sides = np.where(np.isfinite(sides), sides, sides[::-1])
+    with np.errstate(invalid="ignore"):
+        return np.abs(sides.mean(axis=0) - across) <= STEADY * np.abs(across)
 
 
 def _circles(one: Floats, two: Floats) -> tuple[Floats, Floats]:
