@@ -82,3 +82,39 @@ def test_noise_and_smooth_surfaces_have_none():
     a, b = i * 60 + j, i * 60 + (j + 1) % 60
     quads = np.concatenate([np.stack([a, a + 60, b + 60], 1), np.stack([a, b + 60, b], 1)])
     assert len(tangent(sphere.reshape(-1, 3), quads)) == 0
+
+
+def pipe_elbow(around=24, along=8, radius=0.3, bend=1.0, leg=1.5):
+    """A quarter of a torus between two cylinders of one row each, open at its ends, and bounds of K at its vertices."""
+    t = np.linspace(0.0, np.pi / 2, along + 1)
+    out = np.stack([np.cos(t), np.sin(t), 0.0 * t], axis=1)
+    out = np.concatenate([out[:1], out, out[-1:]])
+    centres = bend * out
+    centres[0, 1], centres[-1, 0] = -leg, -leg
+    u = 2.0 * np.pi * np.arange(around) / around
+    ring = np.cos(u)[None, :, None] * out[:, None] + np.sin(u)[None, :, None] * np.array([0.0, 0.0, -1.0])
+    vertices = (centres[:, None] + radius * ring).reshape(-1, 3)
+    i, j = (x.ravel() for x in np.meshgrid(np.arange(len(out) - 1), np.arange(around), indexing="ij"))
+    a, b = i * around + j, i * around + (j + 1) % around
+    faces = np.concatenate([np.stack([a, b, b + around], 1), np.stack([a, b + around, a + around], 1)])
+    on_torus = np.tile(np.cos(u) / (radius * (bend + radius * np.cos(u))), (len(out), 1))
+    on_torus[[0, -1]] = 0.0
+    low, high = np.minimum(on_torus, 0.0), np.maximum(on_torus, 0.0)
+    low[2:-2] = high[2:-2] = on_torus[2:-2]
+    return vertices, faces, (low.ravel(), high.ravel())
+
+
+def test_they_are_where_cylinders_of_long_rectangles_go_on_as_a_torus():
+    vertices, faces, _ = pipe_elbow()
+    rings = np.sort(tangent(vertices, faces), axis=1) // 24
+    assert np.array_equal(rings[:, 0], rings[:, 1])
+    assert np.array_equal(np.bincount(rings[:, 0], minlength=11), np.where(np.isin(np.arange(11), (1, 9)), 24, 0))
+
+
+def test_torus_between_cylinders_has_its_own_curvature():
+    vertices, faces, (low, high) = pipe_elbow()
+    curvature = rinow.surface_curvature((vertices, faces))
+    inside = np.repeat(np.arange(11), 24) % 10 != 0
+    errors = np.maximum(np.maximum(low - curvature.gaussian, curvature.gaussian - high), 0.0)[inside]
+    assert np.sqrt(np.mean(errors**2)) < 0.03 / 0.3**2
+    assert np.mean(errors <= 2.0 * curvature.spread[inside]) > 0.9

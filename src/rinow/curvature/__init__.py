@@ -17,8 +17,8 @@ Surfaces
       `second_look`, `patch_tasks`, `ends`.
     - Both: `lifted`; `auto` with `unresolved`.
     - What is not smooth: `singular` with `creases` and `cone_points`; `barriers`, `tangent_edges`, `cut`, `facets`,
-      `exact_facets`, `flat`, `hull_slivers`, `strays`; `voxels` and `terraces` of masks; `levels` of heights;
-      `rounding` of positions.
+      `rims`, `star_bounds`, `exact_facets`, `flat`, `hull_slivers`, `strays`; `voxels` and `terraces` of masks;
+      `levels` of heights; `rounding` of positions.
 Points without a mesh
     `point_cloud`, over `cloud_facing` with `cloud_signs` and `cloud_stars`, `cloud_layers`, `cloud_sheet`,
     `cloud_hands`, `cloud_faces`, `cloud_holes`, `cloud_fit`; `clouds` as metric spaces.

@@ -13,7 +13,9 @@ from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.facets import take_facets
 from rinow.curvature.hull_slivers import without_hull_slivers
+from rinow.curvature.rims import rims_of, take_strips
 from rinow.curvature.rounding import file_rounding
+from rinow.curvature.star_bounds import heed_stars
 from rinow.curvature.stencils import rings_around
 from rinow.curvature.tangent_edges import tangent_edges
 from rinow.kernels import cuts
@@ -25,6 +27,8 @@ Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 Progress = Callable[[int, int], object]
 
+CLEAR = 0.25
+"""The same over what both differ by: so much is no noise, but the jump of which the whole knows nothing."""
 NOISE = 2.0
 """A side bends if its sagitta over a ball exceeds so many standard deviations of the positions."""
 SURE, NEAR_RINGS, STRIP_RINGS = 0.5, 8, 3
@@ -110,13 +114,23 @@ def one_sided(
     estimate = method(cut, progress=report, **options)
     on_crease = np.bincount(origin, minlength=n) > 1
     if cut is not mesh:
+        _heed(cut, estimate, options)
         take_facets(cut, estimate, cut.topology.vertex_is_boundary | ~np.isfinite(estimate.spread))
+        take_strips(cut, estimate, rims_of(cut))
         estimate = _that_bends_most(cut, estimate, origin)
     if is_tangent.any():
         done_before = n
         cut, origin = cut_along_creases(mesh, is_crease | is_tangent)
-        _take_faces(mesh, is_tangent, estimate, (cut, method(cut, progress=report, **options), origin), on_crease)
+        beside = method(cut, progress=report, **options)
+        _heed(cut, beside, options)
+        _take_faces(mesh, is_tangent, estimate, (cut, beside, origin), on_crease)
     return estimate, on_crease
+
+
+def _heed(cut: TriangleMesh, estimate: Estimate, options: dict[str, Any]) -> None:
+    """Correct, in place, what the mesh itself contradicts, unless a radius is given."""
+    if options.get("radius") is None:
+        heed_stars(cut, estimate, rims_of(cut))
 
 
 def _take_faces(
@@ -125,8 +139,9 @@ def _take_faces(
 ) -> None:  # fmt: skip
     """Take the curvature of faces by themselves near tangent edges, in place, where it promises much less error.
 
-    Few points on one side may tell less than all around, for which the jump is noise.  What has no vertex inside is no
-    face but a strip: it is flat whatever the surface is.
+    Few points on one side may tell less than all around, for which the jump is noise.  But what both differ by, beyond
+    the error of the face by itself, is an error of the whole, however small its spread: it bends over the edge.  What
+    has no vertex inside is no face but a strip: it is flat whatever the surface is.
     """
     cut, beside, origin = apart
     joins = np.zeros(mesh.n_vertices, np.bool_)
@@ -139,8 +154,13 @@ def _take_faces(
     beside.spread[is_strip | ~np.isfinite(beside.spread)] = np.inf
     is_known = np.bincount(origin, ~np.isfinite(beside.gaussian), mesh.n_vertices) == 0
     beside = _that_bends_most(cut, beside, origin)
-    limit = SURE * np.nan_to_num(estimate.spread, nan=np.inf)
-    rows = np.flatnonzero(rings_around(mesh.topology, joins, NEAR_RINGS) & is_known & (beside.spread < limit))
+    step = np.nan_to_num(np.abs(beside.gaussian - estimate.gaussian))
+    limit = np.fmax(SURE * np.nan_to_num(estimate.spread, nan=np.inf), CLEAR * step)
+    is_near = rings_around(mesh.topology, joins, NEAR_RINGS) & is_known
+    is_taken = is_near & (beside.spread < limit)
+    doubted = np.flatnonzero(is_near & ~is_taken & np.isfinite(beside.spread))
+    estimate.spread[doubted] = np.fmax(estimate.spread[doubted], step[doubted] - beside.spread[doubted])
+    rows = np.flatnonzero(is_taken)
     estimate.fill(rows, beside.at(rows))
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
+from rinow.curvature.rims import rims_of
 from rinow.curvature.rounding import coordinate_rounding, file_rounding
 from rinow.kernels import facet_stars
 from rinow.mesh import TriangleMesh
@@ -61,7 +62,12 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool
         mesh.vertices, mesh.faces, t.corner_offsets, t.vertex_corners, t.edges, across, lines,
     )  # fmt: skip
     is_facet = np.isfinite(across) & (is_open[rows] | (lines < 0))
+    rims = rims_of(mesh)
+    known = np.isfinite(rims.across)
+    by_rim = np.full(mesh.n_vertices, np.nan)
+    by_rim[rims.rows[known]] = rims.across[known]
     rows, across, lines = rows[is_facet], across[is_facet], lines[is_facet]
+    across = np.where((lines >= 0) & np.isfinite(by_rim[rows]), by_rim[rows], across)
     estimate.gaussian[rows] = estimate.spread[rows] = 0.0
     estimate.mean[rows] = 0.5 * across
     estimate.k1[rows], estimate.k2[rows] = np.maximum(across, 0.0), np.minimum(across, 0.0)

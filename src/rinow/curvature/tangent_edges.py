@@ -48,8 +48,8 @@ def tangent_edges(mesh: TriangleMesh, turnings: EdgeTurnings) -> Bools:
     -----
     Modellers triangulate each face of a part by itself, as coarsely as its curvature allows: planes by facets of any
     size, cylinders by rows of rectangles, roundings by small triangles.  A facet is all that is flat to rounding around
-    a face, its width the area over the circumference: half the width of a long strip, a sixth of the height of an
-    equilateral triangle.
+    a face, its width at an edge the area over the length of that edge, of a single triangle its height.  So the ends of
+    long rectangles are wide, where a cylinder goes on as a sphere or a torus, and their sides are narrow.
     """
     n_edges, h, partners = len(turnings.turnings), turnings.halfedges, mesh.topology.partners
     rounding, is_tangent = file_rounding(mesh), np.zeros(n_edges, np.bool_)
@@ -72,7 +72,10 @@ def tangent_edges(mesh: TriangleMesh, turnings: EdgeTurnings) -> Bools:
 
 
 def _ends_of_wide_facets(mesh: TriangleMesh, pairs: Indices) -> Indices:
-    """Half-edges of facets, made of pairs (k, 2) of coplanar faces, beyond which the facet or face is much narrower."""
+    """Half-edges of facets, made of pairs (k, 2) of coplanar faces, beyond which the facet or face is much narrower.
+
+    Both have the same edge, so that the ratio of the widths is that of the areas.
+    """
     faces, places = np.unique(pairs, return_inverse=True)
     facet = clusters(len(faces), places.reshape(-1, 2))[1]
     own, inner = np.repeat(facet, 3), (3 * faces[:, None] + np.arange(3)).ravel()
@@ -81,17 +84,6 @@ def _ends_of_wide_facets(mesh: TriangleMesh, pairs: Indices) -> Indices:
     is_alone = faces[place] != outer // 3
     is_end = is_alone | (facet[place] != own)
     own, inner, outer, place, is_alone = (x[is_end] for x in (own, inner, outer, place, is_alone))
-    lengths = np.linalg.norm(_sides(mesh, inner), axis=1)
-    widths = np.bincount(facet, mesh.face_areas[faces]) / np.bincount(own, lengths, facet.max() + 1)
-    beyond = np.where(outer < 0, np.inf, widths[facet[place]])
-    single = np.flatnonzero(is_alone & (outer >= 0))
-    others = outer[single] // 3
-    around = np.linalg.norm(_sides(mesh, 3 * others[:, None] + np.arange(3)), axis=2).sum(axis=1)
-    beyond[single] = mesh.face_areas[others] / around
-    return inner[widths[own] >= WIDER * beyond]
-
-
-def _sides(mesh: TriangleMesh, halfedges: Indices) -> Floats:
-    """(..., 3): the vectors along half-edges."""
-    faces, corner = halfedges // 3, halfedges % 3
-    return mesh.vertices[mesh.faces[faces, (corner + 1) % 3]] - mesh.vertices[mesh.faces[faces, corner]]
+    areas = np.bincount(facet, mesh.face_areas[faces])
+    beyond = np.where(is_alone, 2.0 * mesh.face_areas[outer // 3], areas[facet[place]])
+    return inner[(outer >= 0) & (areas[own] >= WIDER * beyond)]
