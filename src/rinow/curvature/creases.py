@@ -92,10 +92,15 @@ class EdgeTurnings:
         """Levels that heights were rounded to, whose treads are no facets."""
         return levels_of(self.mesh)
 
+    @property
+    def have_treads(self) -> bool:
+        """What is flat are steps of voxels or of levels, and no facet."""
+        return self.are_steps or self.levels is not None
+
     @cached_property
     def ends_facet(self) -> Bools:
         """(n_edges,): a large flat facet ends there, a crease beyond doubt whose jump is the turning."""
-        if self.are_steps or self.levels is not None:
+        if self.have_treads:
             return np.zeros(len(self.turnings), np.bool_)
         return ends_of_facets(self.mesh, self.turnings, self.gains, self.halfedges)
 

@@ -27,13 +27,13 @@ Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 Progress = Callable[[int, int], object]
 
-CLEAR = 0.25
-"""The same over what both differ by: so much is no noise, but the jump of which the whole knows nothing."""
 NOISE = 2.0
 """A side bends if its sagitta over a ball exceeds so many standard deviations of the positions."""
 SURE, NEAR_RINGS, STRIP_RINGS = 0.5, 8, 3
 """Standard error of a face by itself over that of the whole up to which it is taken, how far from a tangent edge, and
 how far from vertices inside the face."""
+CLEAR = 0.25
+"""The same standard error over what both differ by: so much is no noise, but the jump that the whole does not know."""
 
 
 def cut_along_creases(

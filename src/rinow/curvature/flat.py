@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.levels import flat_stars, levels_of
+from rinow.curvature.levels import flat_stars
 from rinow.curvature.stencils import rings_around
 from rinow.mesh import TriangleMesh
 
@@ -22,7 +22,7 @@ def flat_vertices(mesh: TriangleMesh) -> NDArray[np.bool_]:
     if curved.mean() > 0.99:
         return ~curved & False
     flat = ~rings_around(mesh.topology, curved, FLAT_RINGS)
-    return flat & (not (flat.any() and (EdgeTurnings(mesh).are_steps or levels_of(mesh) is not None)))
+    return flat & (not (flat.any() and EdgeTurnings(mesh).have_treads))
 
 
 def flatten(estimate: Estimate, is_flat: NDArray[np.bool_]) -> None:

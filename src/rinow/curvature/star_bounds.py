@@ -51,7 +51,7 @@ def heed_stars(mesh: TriangleMesh, estimate: Estimate, rims: Rims) -> None:
     fit errs.  So what lies outside their range by more than half its width, and by three spreads or with a spread above
     that width, is no curvature of this surface.  A vertex inside has that of its own star then, one at the boundary the
     middle of those within two rings.  The width is the spread, at the boundary together with (k θ/2)² for the curvature
-    k and the turning θ of its faces, since polygons stand for curves there.  Steps of voxels are no curvature.
+    k and the turning θ of its faces, since polygons stand for curves there.  Steps of voxels and levels do not count.
     """
     if estimate.mean is None or estimate.k1 is None or estimate.k2 is None:
         return
@@ -70,7 +70,7 @@ def heed_stars(mesh: TriangleMesh, estimate: Estimate, rims: Rims) -> None:
         is_wrong &= (step > BEYOND * width) & (step > LEAST * largest**2)
     rows = np.flatnonzero(is_wrong & t.vertex_is_boundary)
     is_wrong[[v for v in rows if _stars_within_two_rings(t, v, stars) < FEWEST]] = False
-    if not is_wrong.any() or EdgeTurnings(mesh).are_steps:
+    if not is_wrong.any() or EdgeTurnings(mesh).have_treads:
         return
     both = single_rings(mesh)
     rows = np.flatnonzero(is_wrong & np.isfinite(both[:, 1]))

@@ -64,7 +64,7 @@ def tangent_edges(mesh: TriangleMesh, turnings: EdgeTurnings) -> Bools:
     is_clear = np.abs(turnings.turnings[edges]) > CLEAR * rounding * turnings.gains[edges]
     is_tangent[edges[is_clear & ~is_sharp[edges]]] = True
     least = max(LEAST_LINE, LEAST_SHARE * n_edges)
-    if np.count_nonzero(is_tangent) < least or turnings.are_steps:
+    if np.count_nonzero(is_tangent) < least or turnings.have_treads:
         return np.zeros(n_edges, np.bool_)
     labels = crease_lines.line_components(is_tangent, mesh.topology.edges, mesh.n_vertices)
     is_tangent &= (np.bincount(labels[is_tangent], minlength=mesh.n_vertices) >= LEAST_LINE)[labels]
