@@ -74,6 +74,8 @@ def test_even_grids_of_few_planes_and_fine_digits_are_no_levels(height):
     assert levels_of(TriangleMesh(V @ TURN.T, F)) is None
 
 
-@pytest.mark.parametrize("shape", [shapes.box(12), shapes.icosphere(4), shapes.irregular_torus(1000)])
-def test_closed_surfaces_are_no_height_fields(shape):
+@pytest.mark.parametrize(
+    "shape", [shapes.box(12), shapes.cone(60, 40), shapes.icosphere(4), shapes.irregular_torus(1000)]
+)
+def test_parts_are_no_levels(shape):
     assert levels_of(TriangleMesh(shape.vertices, shape.faces)) is None

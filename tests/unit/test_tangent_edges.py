@@ -6,6 +6,7 @@ import pytest
 import rinow
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.tangent_edges import tangent_edges
+from voxels import lattice, marching_cubes
 
 RADIUS, ROUND, HEIGHT = 1.0, 0.25, 3.0
 AROUND, ROWS = 50, 7
@@ -118,3 +119,11 @@ def test_torus_between_cylinders_has_its_own_curvature():
     errors = np.maximum(np.maximum(low - curvature.gaussian, curvature.gaussian - high), 0.0)[inside]
     assert np.sqrt(np.mean(errors**2)) < 0.03 / 0.3**2
     assert np.mean(errors <= 2.0 * curvature.spread[inside]) > 0.9
+
+
+def test_lines_between_facets_of_marching_cubes_end_anywhere_and_are_none():
+    # Symmetric cells have coplanar triangles, which end at slivers.
+    points = lattice(18.0)
+    vertices, faces = marching_cubes(points, 1.5 - np.sum((points / 15.0) ** 2, axis=-1))
+    assert len(tangent(vertices, faces)) == 0
+    np.testing.assert_allclose(rinow.surface_curvature((vertices, faces)).gaussian, 1.0 / 15.0**2, rtol=0.02)

@@ -16,8 +16,9 @@ Floats = NDArray[np.float64]
 
 FLAT_DEFECT = 1e-10
 """Angle defects below this, in radians, are rounding: a neighbourhood of such vertices is isometric to the plane."""
-FEWEST, FLAT = 250, 0.01
-"""Vertices of a height field that can be told to be on levels, and least share of them whose stars are flat."""
+FEWEST, FLAT = 250, (0.01, 0.95)
+"""Vertices of a height field that can be told to be on levels, and least and largest share of them whose stars are
+flat: cones in even rows are on levels, and flat throughout."""
 PLANES, LOOKED_AT, ALIKE = 20, 4096, 1e-3
 """Fewest planes of flat stars, how many of these are looked at, and the difference up to which two planes are one, in
 radians and edge lengths: rounding makes as many planes as there are slopes, parts of even grids have few."""
@@ -58,7 +59,7 @@ def levels_of(mesh: TriangleMesh) -> Levels | None:
     """
     is_flat = flat_stars(mesh) & ~mesh.topology.vertex_is_boundary & mesh.topology.vertex_is_used
     n, n_flat = np.count_nonzero(mesh.topology.vertex_is_used), np.count_nonzero(is_flat)
-    if n < FEWEST or n_flat < FLAT * n:
+    if n < FEWEST or not FLAT[0] * n < n_flat < FLAT[1] * np.count_nonzero(~mesh.topology.vertex_is_boundary):
         return None
     rows = np.flatnonzero(is_flat)[:: max(1, n_flat // LOOKED_AT)]
     normals, unit = mesh.vertex_normals[rows], ALIKE * mesh.mean_edge_length

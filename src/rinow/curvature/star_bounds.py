@@ -24,7 +24,7 @@ RINGS = 4
 SURE = 3.0
 """Spreads by which a fit leaves the range of the stars around it."""
 FEWEST = 3
-"""Stars within two rings of a vertex at the boundary that show what they have in common."""
+"""Stars that show what they have in common: of a vertex and its neighbours, at the boundary within two rings."""
 BEYOND = 0.5
 """Widths of that range by which it does."""
 LEAST = 0.1
@@ -68,8 +68,8 @@ def heed_stars(mesh: TriangleMesh, estimate: Estimate, rims: Rims) -> None:
         is_wrong = rings_around(t, t.vertex_is_boundary, RINGS)
         is_wrong &= (step > SURE * estimate.spread) | (estimate.spread > width)
         is_wrong &= (step > BEYOND * width) & (step > LEAST * largest**2)
-    rows = np.flatnonzero(is_wrong & t.vertex_is_boundary)
-    is_wrong[[v for v in rows if _stars_within_two_rings(t, v, stars) < FEWEST]] = False
+    rows = np.flatnonzero(is_wrong)
+    is_wrong[[v for v in rows if _known_stars(t, v, stars) < FEWEST]] = False
     if not is_wrong.any() or EdgeTurnings(mesh).have_treads:
         return
     both = single_rings(mesh)
@@ -88,11 +88,13 @@ def heed_stars(mesh: TriangleMesh, estimate: Estimate, rims: Rims) -> None:
     estimate.spread[rest] = np.fmax(estimate.spread[rest], step[rest])
 
 
-def _stars_within_two_rings(graph: Topology, vertex: np.intp, stars: Floats) -> int:
-    """How many stars within two rings have a curvature."""
-    ring = graph.neighbours[graph.neighbour_offsets[vertex] : graph.neighbour_offsets[vertex + 1]]
-    near = [graph.neighbours[graph.neighbour_offsets[v] : graph.neighbour_offsets[v + 1]] for v in ring]
-    return int(np.count_nonzero(np.isfinite(stars[np.unique(np.concatenate([ring, *near]))])))
+def _known_stars(graph: Topology, vertex: np.intp, stars: Floats) -> int:
+    """How many stars of a vertex and its neighbours, at the boundary of those and theirs, have a curvature."""
+    near = graph.neighbours[graph.neighbour_offsets[vertex] : graph.neighbour_offsets[vertex + 1]]
+    if graph.vertex_is_boundary[vertex]:
+        rows = [graph.neighbours[graph.neighbour_offsets[v] : graph.neighbour_offsets[v + 1]] for v in near]
+        near = np.unique(np.concatenate([near, *rows]))
+    return int(np.count_nonzero(np.isfinite(stars[np.append(near[near != vertex], vertex)])))
 
 
 def _ranges(graph: Topology, low: Floats, high: Floats) -> tuple[Floats, Floats]:

@@ -27,6 +27,9 @@ design; by chance it is a third."""
 LEAST_LINE, LEAST_SHARE = 4, 2e-3
 """Edges of a line that is none by chance, and of all lines of a mesh of parts: on terrains in whole metres few facets
 are flat by chance."""
+FREE = 0.15
+"""Share of the vertices at which lines may end: those around faces do not, but a quarter of those between the facets
+that marching cubes make, next to slivers."""
 
 
 def tangent_edges(mesh: TriangleMesh, turnings: EdgeTurnings) -> Bools:
@@ -68,7 +71,9 @@ def tangent_edges(mesh: TriangleMesh, turnings: EdgeTurnings) -> Bools:
         return np.zeros(n_edges, np.bool_)
     labels = crease_lines.line_components(is_tangent, mesh.topology.edges, mesh.n_vertices)
     is_tangent &= (np.bincount(labels[is_tangent], minlength=mesh.n_vertices) >= LEAST_LINE)[labels]
-    return is_tangent & (np.count_nonzero(is_tangent) >= least)
+    degrees = np.bincount(mesh.topology.edges[is_tangent].ravel())
+    are_lines = np.count_nonzero(degrees == 1) <= FREE * np.count_nonzero(degrees)
+    return is_tangent & (are_lines and np.count_nonzero(is_tangent) >= least)
 
 
 def _ends_of_wide_facets(mesh: TriangleMesh, pairs: Indices) -> Indices:
