@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rinow.curvature.barriers import crease_barriers
 from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
-from rinow.curvature.facets import take_facets
+from rinow.curvature.facets import take_facets, tells_facets
 from rinow.curvature.hull_slivers import without_hull_slivers
 from rinow.curvature.rims import rims_of, take_strips
 from rinow.curvature.rounding import file_rounding
@@ -116,7 +116,8 @@ def one_sided(
     if cut is not mesh:
         _heed(cut, estimate, options)
         take_facets(cut, estimate, cut.topology.vertex_is_boundary | ~np.isfinite(estimate.spread))
-        take_strips(cut, estimate, rims_of(cut))
+        if tells_facets(EdgeTurnings(cut)):
+            take_strips(cut, estimate, rims_of(cut))
         estimate = _that_bends_most(cut, estimate, origin)
     if is_tangent.any():
         done_before = n
@@ -128,8 +129,8 @@ def one_sided(
 
 
 def _heed(cut: TriangleMesh, estimate: Estimate, options: dict[str, Any]) -> None:
-    """Correct, in place, what the mesh itself contradicts, unless a radius is given."""
-    if options.get("radius") is None:
+    """Correct, in place, what the mesh itself contradicts, unless a radius is given or rounding makes its stars."""
+    if options.get("radius") is None and tells_facets(EdgeTurnings(cut)):
         heed_stars(cut, estimate, rims_of(cut))
 
 

@@ -12,13 +12,25 @@ from rinow.curvature.rounding import coordinate_rounding, file_rounding
 from rinow.kernels import facet_stars
 from rinow.mesh import TriangleMesh
 
-__all__ = ["take_facets"]
+__all__ = ["take_facets", "tells_facets"]
 
 Floats = NDArray[np.float64]
 
 
 BY_CHANCE = 0.02
 """Turning of the typical edge, in radians, by rounding of coordinates from which on faces are coplanar by chance."""
+
+
+def tells_facets(turnings: EdgeTurnings) -> bool:
+    """Whether what is flat is so by design.
+
+    Coordinates that are rounded to a share of the spacing, as 32 bits do far from the origin, tell no facets, nor do
+    the treads of levels.
+    """
+    gains = turnings.gains[np.isfinite(turnings.gains)]
+    if len(gains) and coordinate_rounding(turnings.mesh) * float(np.median(gains)) > BY_CHANCE:
+        return False
+    return turnings.levels is None
 
 
 def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool_]) -> None:
@@ -36,9 +48,6 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool
 
     Notes
     -----
-    Coordinates that are rounded to a share of the spacing, as 32 bits do far from the origin, tell no facets, nor do
-    the treads of levels.
-
     Such a star is isometric to a part of the plane, K = 0.  A facet of a prism inscribed in a cylinder of radius R has
     the height h over the edge where it meets the next one; with the angle θ between both,
 
@@ -50,10 +59,7 @@ def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool
         return
     rows = np.flatnonzero(mesh.topology.vertex_is_used)
     t, turnings = mesh.topology, EdgeTurnings(mesh)
-    gains = turnings.gains[np.isfinite(turnings.gains)]
-    if len(gains) and coordinate_rounding(mesh) * float(np.median(gains)) > BY_CHANCE:
-        return
-    if turnings.levels is not None:
+    if not tells_facets(turnings):
         return
     rounding = file_rounding(mesh) * turnings.gains
     across, lines = np.empty(len(rows)), np.empty(len(rows), np.intp)

@@ -15,7 +15,7 @@ Fits
     driven by `patch_driver`; `covers` and `patch_order` place the patches; `monge`, `quadrics`, `ring_jets`; `clouds`,
     `cloud_strays`, `cloud_layers` and `cloud_hands` without a mesh.
 Averages of angle defects
-    `development`, `smoothing`, `stars`, `arcs`, `chord_forms`, `geodesic_stars`.
+    `development`, `smoothing`, `margins`, `stars`, `arcs`, `chord_forms`, `geodesic_stars`.
 Geodesics
     `geodesics` over `windows`, `unfolding`, `geodesic_balls` and `heaps`; `geodesic_rows`.
 Distances of surfaces
