@@ -25,12 +25,12 @@ def tells_facets(turnings: EdgeTurnings) -> bool:
     """Whether what is flat is so by design.
 
     Coordinates that are rounded to a share of the spacing, as 32 bits do far from the origin, tell no facets, nor do
-    the treads of levels.
+    the treads of voxels and levels.
     """
     gains = turnings.gains[np.isfinite(turnings.gains)]
     if len(gains) and coordinate_rounding(turnings.mesh) * float(np.median(gains)) > BY_CHANCE:
         return False
-    return turnings.levels is None
+    return not turnings.have_treads
 
 
 def take_facets(mesh: TriangleMesh, estimate: Estimate, is_open: NDArray[np.bool_]) -> None:

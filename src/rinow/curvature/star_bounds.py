@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rinow.curvature.angle_defect import angle_defect
-from rinow.curvature.creases import EdgeTurnings
 from rinow.curvature.estimate import Estimate
 from rinow.curvature.rims import Rims, write_rims
 from rinow.curvature.stencils import rings_around
@@ -51,7 +50,7 @@ def heed_stars(mesh: TriangleMesh, estimate: Estimate, rims: Rims) -> None:
     fit errs.  So what lies outside their range by more than half its width, and by three spreads or with a spread above
     that width, is no curvature of this surface.  A vertex inside has that of its own star then, one at the boundary the
     middle of those within two rings.  The width is the spread, at the boundary together with (k θ/2)² for the curvature
-    k and the turning θ of its faces, since polygons stand for curves there.  Steps of voxels and levels do not count.
+    k and the turning θ of its faces, since polygons stand for curves there.
     """
     if estimate.mean is None or estimate.k1 is None or estimate.k2 is None:
         return
@@ -70,7 +69,7 @@ def heed_stars(mesh: TriangleMesh, estimate: Estimate, rims: Rims) -> None:
         is_wrong &= (step > BEYOND * width) & (step > LEAST * largest**2)
     rows = np.flatnonzero(is_wrong)
     is_wrong[[v for v in rows if _known_stars(t, v, stars) < FEWEST]] = False
-    if not is_wrong.any() or EdgeTurnings(mesh).have_treads:
+    if not is_wrong.any():
         return
     both = single_rings(mesh)
     rows = np.flatnonzero(is_wrong & np.isfinite(both[:, 1]))
