@@ -35,6 +35,9 @@ how far from vertices inside the face."""
 CLEAR = 0.25
 """The same standard error over what both differ by: so much is no noise, but the jump that the whole does not know."""
 
+OF_VOXELS = 1.2
+"""The standard error where vertices were moved to a lattice, neighbours alike, over that of independent noise."""
+
 
 def cut_along_creases(
     mesh: TriangleMesh, is_crease: NDArray[np.bool_] | None = None
@@ -101,9 +104,11 @@ def one_sided(
     smooth = without_hull_slivers(mesh, is_crease)
     if smooth is not mesh:
         mesh, is_crease = smooth, crease_barriers(smooth)
-    is_tangent = np.zeros(len(is_crease), np.bool_)
+    turnings, is_tangent = EdgeTurnings(mesh), np.zeros(len(is_crease), np.bool_)
+    are_steps = turnings.are_steps
     if options.get("radius") is None:
-        is_tangent = tangent_edges(mesh, EdgeTurnings(mesh)) & ~is_crease
+        is_tangent = tangent_edges(mesh, turnings) & ~is_crease
+    del turnings  # as large as the mesh
     n, passes, done_before = mesh.n_vertices, 1 + int(is_tangent.any()), 0
 
     def report(done: int, total: int) -> None:
@@ -125,6 +130,8 @@ def one_sided(
         beside = method(cut, progress=report, **options)
         _heed(cut, beside, options)
         _take_faces(mesh, is_tangent, estimate, (cut, beside, origin), on_crease)
+    if are_steps:
+        estimate.spread[:] *= OF_VOXELS
     return estimate, on_crease
 
 

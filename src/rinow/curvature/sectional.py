@@ -71,7 +71,7 @@ class Quality(NamedTuple):
     calibration: float
 
 
-QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5, 1.2), "fast": Quality(0.3, 1.2, False, 1.0, 1.8)}
+QUALITIES = {"best": Quality(0.2, 0.9, True, 0.5, 1.05), "fast": Quality(0.3, 1.2, False, 1.0, 1.2)}
 
 
 def sectional(
