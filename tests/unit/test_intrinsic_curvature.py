@@ -118,6 +118,18 @@ def test_a_bump_is_not_flat_since_large_balls_agree_on_that(noise):
     assert np.mean((np.abs(c.gaussian - shape.gaussian) < 2 * c.spread)[on_bump]) > 0.9
 
 
+def test_balls_that_hold_all_corners_of_a_small_noisy_cube_do_not_agree_that_it_is_round():
+    """Balls of 16 spacings hold half of |x|⁴ + |y|⁴ + |z|⁴ = 1, and larger ones have the same means, no bias."""
+    sphere = shapes.irregular_sphere(800)
+    V = sphere.vertices / np.sum(sphere.vertices**4, axis=1, keepdims=True) ** 0.25
+    g, h = 4 * V**3, 12 * V**2  # of the level set: K = Σ g_i² h_j h_k / |g|⁴
+    minors = np.roll(h, 1, axis=1) * np.roll(h, 2, axis=1)
+    gaussian = np.sum(g**2 * minors, axis=1) / np.sum(g**2, axis=1) ** 2
+    for seed in range(3):
+        c = curvature_by_lengths(shapes.noisy(sphere._replace(vertices=V, gaussian=gaussian), 0.1, seed=seed))
+        assert np.mean(np.abs(c.gaussian - gaussian) < 2 * c.spread) > 0.85
+
+
 @pytest.mark.parametrize("n", [1000, 4000])
 @pytest.mark.parametrize("noise", [0, 0.01, 0.05])
 def test_spread_covers_the_error_on_spheres(n, noise):

@@ -49,7 +49,7 @@ def test_two_spreads_hold_the_errors(options, surface):
         if place.any():  # of a boundary some ten stretches err each by itself, so three meshes count together
             assert held[:, place].mean() > 0.9
             ratios = np.median(spreads[:, place], axis=1) / np.sqrt(np.mean(errors[:, place] ** 2, axis=1))
-            print('RATIO', options, surface, place is ends, np.exp(np.log(ratios).mean()), held[:, place].mean()); assert np.exp(np.log(ratios).mean()) < 2.5
+            assert np.exp(np.log(ratios).mean()) < 2.5
 
 
 @pytest.mark.parametrize("surface", ["hill", "torus"])

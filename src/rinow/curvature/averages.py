@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,8 @@ FADING = 2, 16
 """Scales from which on weights fade out towards boundaries, in averages of their own, and after which all do."""
 FLOOR = 0.1
 """Share of the variance of a comparison that its square cannot be told from: least squared bias."""
+PROOF, PROVEN = 12.0, 32
+"""Squared bias over the noise it is seen in from which on it is beyond doubt, and least scale for that."""
 WITHIN = 3.0
 """Differences of a value from its reference over the root of its squared bias, at most, so that two spreads hold them.
 S is not symmetric, and waves may grow somewhere: they do so in these differences as well."""
@@ -44,6 +46,14 @@ class Averages:
         Variance of the lengths.
     margins : Margins
         Its boundaries.
+    proven : dict of (bool, int, int) to (n_vertices,) ndarray of float
+        Squared biases beyond doubt, by whether weights fade, scale and order.
+
+    Notes
+    -----
+    A scale and its reference, by which biases are seen, agree where both hold so much of the surface that what bends
+    in it has the total curvature 0.  But the reference differs from its own, and what averages of growing scale lose
+    has the same sign at each step: biases that are proven add up, in squares at least.
     """
 
     flow: CurvatureFlow
@@ -51,9 +61,13 @@ class Averages:
     waves: Waves
     level: Floats
     margins: Margins
+    proven: dict[tuple[bool, int, int], Floats] = field(default_factory=dict, init=False)
 
     def of_scale(self, m: int) -> Iterator[Candidate]:
-        """The averages of one scale, of all orders."""
+        """The averages of one scale, of all orders; scales have to grow."""
+        if m:
+            for key in [key for key in self.proven if key[1] < REFERENCE[m]]:
+                del self.proven[key]
         fades = self.margins.exist and m >= FADING[0]
         if not fades or m <= FADING[1]:
             yield from self._even(m)
@@ -72,7 +86,7 @@ class Averages:
             values = sums[i] if m else np.where(self.flow.has_data, sums[i], np.nan)
             bias = np.zeros(len(radius))
             if m:
-                bias = squared_bias(m, sums[len(windows) + i], self.flow, self._variance(differences[i], jumps))
+                bias = self._bias((False, m, i + 1), sums[len(windows) + i], self._variance(differences[i], jumps))
             yield values, self._raised(self._variance(c, jumps), values), bias, radius
 
     def _faded(self, m: int) -> Iterator[Candidate]:
@@ -84,8 +98,22 @@ class Averages:
             c, more = window(m, order), growth(left, order)
             difference = self._variance(_difference(_reference(m, order), c), None)
             seen = difference * np.fmax(more, growth(beside, order + 1))
-            bias = squared_bias(m, reference - values, self.flow, seen)
+            bias = self._bias((True, m, order), reference - values, seen)
             yield values, self._raised(self._variance(c, None) * more, values), bias, radius
+
+    def _bias(self, key: tuple[bool, int, int], difference: Floats, seen: Floats) -> Floats:
+        """Squared bias by the reference, and by those before as far as it is proven."""
+        fades, m, order = key
+        bias = squared_bias(m, difference, self.flow, seen)
+        if m < PROVEN:
+            return bias
+        proven = np.where(bias > PROOF * seen, bias, 0.0)
+        before = self.proven.get((fades, *_reference_of(m, order)))
+        if before is not None:
+            bias += before
+            proven += before
+        self.proven[key] = proven
+        return bias
 
     def radius(self, m: int) -> Floats:
         """(n_vertices,): radius of the ball averaged over."""
@@ -114,10 +142,15 @@ def squared_bias(m: int, difference: Floats, flow: CurvatureFlow, seen: Floats) 
     return np.fmax(flow.means(excess, int(np.clip(m // 3, *PASSES))), least)
 
 
-def _reference(m: int, order: int) -> Floats:
+def _reference_of(m: int, order: int) -> tuple[int, int]:
     """What the candidate of this scale and order is compared with: half the scale, an order more if there is one."""
     half = REFERENCE[m]
-    return window(half, order + 1 if half == m else min(order + 1, ORDER))
+    return half, order + 1 if half == m else min(order + 1, ORDER)
+
+
+def _reference(m: int, order: int) -> Floats:
+    """The coefficients of the reference."""
+    return window(*_reference_of(m, order))
 
 
 def _difference(a: Floats, b: Floats) -> Floats:
