@@ -184,7 +184,7 @@ GROUPS: dict[str, tuple[Callable[[int], Iterator[Instance]], float]] = {
     "plane": (plane, 60.0),
     "space": (space, 60.0),
     "hops100": (partial(hop_metrics, n=100), 10.0),
-    "hops200": (partial(hop_metrics, n=200), 20.0),
+    "hops200": (partial(hop_metrics, n=200), 60.0),
     "noisy": (noisy_copies, 60.0),
     "lipschitz": (bipartite, 60.0),
     "circle": (circle, 60.0),
