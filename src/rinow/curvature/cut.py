@@ -34,7 +34,6 @@ SURE, NEAR_RINGS, STRIP_RINGS = 0.5, 8, 3
 how far from vertices inside the face."""
 CLEAR = 0.25
 """The same standard error over what both differ by: so much is no noise, but the jump that the whole does not know."""
-
 OF_VOXELS = 1.2
 """The standard error where vertices were moved to a lattice, neighbours alike, over that of independent noise."""
 
